@@ -1,0 +1,37 @@
+// The patch quad tree: which pages of the height map are drawn, at which level, with which neighbours.
+// A node is split when the camera is near, all its children are resident, and the split keeps the level difference between neighbours
+// at most 4; what is not resident is requested. Any state of the cache draws one cover of the map, without overlap or gap.
+// Sources: Far Cry 5 talk, "Terrain Quad Tree", "LOD Transitions", "LOD Mesh Stitching".
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
+
+#include "runtime/maps/height_map.h"
+#include "shaders/geometry/geometry_io.h"
+
+namespace loam {
+
+struct PatchView {
+    glm::dvec3 camera_m{0};
+    glm::dmat4 clip_from_rel{1}; // camera-relative world to clip, reversed Z
+    double split_distance = 1.5; // a node of side s is split when nearer than split_distance * s
+    int max_level = 0, min_level = 0; // min_level: do not go finer than this
+};
+
+struct PatchSet {
+    std::vector<shared::PatchInstance> patches; // all leaves; the first `visible_count` are inside the frustum
+    int visible_count = 0;
+    glm::ivec2 origin_step{0};  // the view's origin step
+    glm::dvec2 origin_rel_m{0}; // its camera-relative place
+    double step_m = 0;          // of the finest patch grid (4 height samples of level 0)
+    uint64_t cut_hash = 0;      // changes when the set of leaves changes
+};
+
+// Requests pages (visible and near first) and selects the cut from what is resident.
+[[nodiscard]] PatchSet select_patches(HeightMap& heights, const PatchView& view);
+
+} // namespace loam

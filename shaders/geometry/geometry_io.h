@@ -1,0 +1,28 @@
+// Terrain patches. A patch is one page of the height map drawn as a grid of kPatchQuads² quads.
+// Positions are whole steps of the finest patch grid relative to a step near the camera: both patches that share a
+// vertex compute the same float from the same integer, so there is no crack between levels.
+#ifndef LOAM_GEOMETRY_IO_H
+#define LOAM_GEOMETRY_IO_H
+#include "shaders/base/shared.h"
+LOAM_BEGIN_SHARED
+
+#define kPatchQuads 16
+
+struct PatchInstance {
+    ivec2 origin;      // south-west vertex, in finest grid steps from the view's origin step
+    int stride;        // finest grid steps between vertices: 2^level
+    uint slot;         // layer of the height and normal arrays
+    uint lod_deltas;   // how many levels coarser the neighbour is: 4 bits each, north << 12 | east << 8 | south << 4 | west
+    uint level;        // for debug views
+};
+
+struct GeometryPush {
+    mat4 clip_from_rel;   // camera-relative metres to clip space
+    vec2 origin_rel_m;    // where the view's origin step lies, camera-relative x, y
+    float step_m;         // metres of a finest grid step
+    float camera_z_m;     // subtracted from heights
+    uint first_instance;
+};
+
+LOAM_END_SHARED
+#endif
