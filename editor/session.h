@@ -1,0 +1,80 @@
+// A session: device, document, renderer and recording together. The window, the Python module and the headless verbs
+// all work through it, so that they cannot differ.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "runtime/base/result.h"
+#include "runtime/document/document.h"
+#include "runtime/frame/camera.h"
+#include "runtime/frame/renderer.h"
+#include "runtime/gpu/device.h"
+#include "runtime/gpu/frame_ring.h"
+
+namespace loam {
+
+struct SessionDesc {
+    gpu::DeviceDesc device;
+    RendererDesc renderer;
+    OpenMode mode = OpenMode::read_write;
+};
+
+struct Picture {
+    int width = 0, height = 0;
+    std::vector<uint8_t> rgba; // sRGB-encoded, row 0 is the top
+};
+
+struct RenderRequest {
+    Camera camera;
+    int width = 1280, height = 720;
+    FrameSettings frame;
+    int max_frames = 600;     // until settled
+    int supersample = 1;      // n x n jittered pictures averaged in linear light
+    bool reference = false;   // direct shading, full geometry, at least 4 x 4 samples
+};
+
+class Session {
+  public:
+    static Result<std::unique_ptr<Session>> open(const std::filesystem::path& project, const SessionDesc& desc);
+    ~Session();
+
+    Document& document() { return *document_; }
+    // The device and renderer are made at the first use: edits and queries of a script that renders nothing need no GPU.
+    Result<Renderer*> renderer();
+    gpu::Device* device() { return device_.get(); }
+    gpu::FrameRing* ring() { return ring_.get(); }
+
+    // One door for edits: applies, tells the renderer, records.
+    Result<Dirt> apply(const Command& command);
+    // Every command from now on is appended to this file, one JSON line each.
+    Status record_to(const std::filesystem::path& file);
+
+    // Renders frames until settled (or max_frames) and returns the picture.
+    Result<Picture> render(const RenderRequest& request);
+    // One frame, without waiting for it to settle: `frames` of them.
+    Status step(const Camera& camera, int width, int height, const FrameSettings& settings, int frames);
+    [[nodiscard]] int frames_rendered() const { return frames_rendered_; }
+    // A view of the whole map from the south-west, above the ground.
+    [[nodiscard]] Camera default_camera();
+
+  private:
+    Session() = default;
+    SessionDesc desc_;
+    std::unique_ptr<Document> document_;
+    std::unique_ptr<gpu::Device> device_;
+    std::unique_ptr<gpu::FrameRing> ring_;
+    std::unique_ptr<Renderer> renderer_;
+    int frames_rendered_ = 0;
+    struct Recorder;
+    std::unique_ptr<Recorder> recorder_;
+};
+
+// "x,y,z,yaw_deg,pitch_deg[,fov_deg]" as on the command line.
+[[nodiscard]] Result<Camera> parse_camera(std::string_view text);
+Status save_png(const std::filesystem::path& file, const Picture& picture);
+
+} // namespace loam

@@ -1,0 +1,108 @@
+// The renderer: Document (const) plus dirt in, pictures out. `render` is the frame's list of passes in order.
+//
+//     auto renderer = Renderer::create(device, ring, document, desc);
+//     renderer->on_dirt(document.apply(command).value());
+//     auto frame = ring.begin();
+//     renderer->render(ring, (*frame)->commands, camera, {960, 540});
+//     ring.end(**frame);
+//     … renderer->picture() holds the picture (RGBA8, sRGB-encoded), `settled()` says whether another frame would improve it
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+
+#include "runtime/base/result.h"
+#include "runtime/document/document.h"
+#include "runtime/frame/camera.h"
+#include "runtime/gpu/frame_ring.h"
+#include "runtime/texture/virtual_texture.h"
+
+namespace loam {
+
+enum class Quality { very_low, low, mid, high, ultra }; // virtual texture sizes of the talk: 13², 16², 22², 30², 42² pages
+enum class Shading { virtual_texture, direct };         // direct: the reference's per-pixel evaluation
+enum class DebugView { none, mips, sectors, normals, occlusion, patches, shadow, albedo };
+
+struct RendererDesc {
+    Quality quality = Quality::low;
+    std::optional<PageFormat> page_format;  // default by device profile
+    int height_slots = 144, index_slots = 144;
+    int page_budget = 0;                    // whole texture pages a frame; 0: by profile
+    bool shadows = true;
+    double patch_split_distance = 0;        // 0: by profile
+};
+
+struct FrameSettings {
+    Shading shading = Shading::virtual_texture;
+    DebugView debug = DebugView::none;
+    float render_scale = 1.0f;     // share of the picture's width and height that is shaded
+    bool fine_filter = true;       // trilinear between page mips and so on; off while moving on software devices
+    glm::dvec2 jitter_px{0, 0};
+    int page_budget = -1;          // overrides RendererDesc::page_budget when >= 0
+    // Brush ring drawn on the ground by the resolve: centre in world metres, radius; radius 0: none.
+    glm::dvec2 ring_center_m{0, 0};
+    double ring_radius_m = 0;
+    float ring_inner = 0.5f;       // share of the radius where the hardness ring is drawn
+};
+
+struct MemoryRow {
+    std::string name;
+    uint64_t bytes = 0;
+};
+
+struct FrameStatistics {
+    uint32_t patches = 0, patches_visible = 0, triangles = 0;
+    uint32_t height_pages = 0, index_pages = 0;
+    uint32_t shadow_cascades_drawn = 0;
+    VirtualTexture::Statistics texture;
+    VirtualMap::Counters height, index;
+    std::vector<MemoryRow> memory;
+    std::vector<gpu::PassTime> passes; // of the newest finished frame
+};
+
+class Renderer {
+  public:
+    static Result<std::unique_ptr<Renderer>> create(gpu::Device& device, gpu::FrameRing& ring, Document& document,
+                                                    const RendererDesc& desc);
+    ~Renderer();
+
+    void on_dirt(const Dirt& dirt);
+    // Reads the sun, haze and layer list again from the document.
+    Status settings_changed(gpu::FrameRing& ring);
+
+    // Records one frame. The picture is `extent` · render_scale pixels in the upper left of picture().
+    Status render(gpu::FrameRing& ring, gpu::Commands& commands, const Camera& camera, glm::uvec2 extent,
+                  const FrameSettings& settings);
+    [[nodiscard]] gpu::Image& picture();         // RGBA8_UNORM, sRGB-encoded, last access fragment_sampled
+    [[nodiscard]] glm::uvec2 picture_size() const; // pixels of it that the last frame filled
+    [[nodiscard]] gpu::Image& gbuffer();         // tests: RGBA16F
+    [[nodiscard]] gpu::Image& depth();
+
+    // Nothing to compose, nothing missing, nothing dirty: another frame from the same camera gives the same picture.
+    [[nodiscard]] bool settled() const;
+    // Pages that wait to be composed, over all maps.
+    [[nodiscard]] uint32_t pending_pages() const;
+
+    // --- queries; the same composed pages as the picture ---
+    [[nodiscard]] double height_m(double x_m, double y_m);
+    [[nodiscard]] glm::dvec3 normal(double x_m, double y_m);
+    [[nodiscard]] IndexTexel layer_at(double x_m, double y_m);
+    [[nodiscard]] std::optional<glm::dvec3> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m = 50'000);
+
+    [[nodiscard]] FrameStatistics statistics() const;
+    [[nodiscard]] const LayerSet& layers() const;
+    // Tests: resident pages of all maps that differ from their composition from nothing.
+    Result<uint32_t> count_stale_pages(gpu::FrameRing& ring);
+
+  private:
+    Renderer();
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace loam
