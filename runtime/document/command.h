@@ -1,0 +1,81 @@
+// Commands: plain data, one JSON object a line. The window's tools, the Python module, the command line and the
+// journal all make these.
+//
+//   {"cmd":"sculpt","mode":"raise","dabs":[[x,y],…],"radius_m":10,"strength_m":0.5,"hardness":0.5}
+//       modes: raise, lower (strength_m a dab), smooth, flatten (strength 0…1; flatten has "target_m")
+//   {"cmd":"paint","dabs":[[x,y],…],"radius_m":5,"layer":"rock","strength":1,"hardness":0.5,"seed":1,
+//    "min_slope_rad":0,"max_slope_rad":1.5708,"tint":[r,g,b]}   ("layer" or "tint" or both)
+//   {"cmd":"crater","x":…,"y":…,"radius_m":10,"depth_m":4,"seed":7}
+//   {"cmd":"footprints","prints":[{"x":…,"y":…,"heading_rad":…,"foot":0},…],"length_m":0.3,"depth_m":0.03,"seed":1}
+//   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}
+//   {"cmd":"undo"}    {"cmd":"redo"}
+// Any command may carry "group": n. Consecutive commands of one group undo together.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "runtime/base/result.h"
+#include "runtime/document/operator.h"
+
+namespace loam {
+
+enum class SculptMode { raise, lower, smooth, flatten };
+
+struct SculptCommand {
+    SculptMode mode = SculptMode::raise;
+    std::vector<glm::dvec2> dabs;
+    double radius_m = 10;   // 0.01 … 5000
+    double strength = 0.5;  // metres a dab for raise and lower; share 0…1 for smooth and flatten
+    double hardness = 0.5;  // 0: falls off from the centre; 1: flat to the rim
+    double target_m = 0;    // flatten
+};
+
+struct PaintCommand {
+    std::vector<glm::dvec2> dabs;
+    double radius_m = 5;
+    std::optional<std::string> layer;
+    std::optional<glm::dvec3> tint; // sRGB-encoded 0…1
+    double strength = 1;   // share of texels (layer, dithered by position and seed) or of the tint
+    double hardness = 0.5;
+    double min_slope_rad = 0, max_slope_rad = 1.5707963267948966;
+    uint32_t seed = 0;
+};
+
+struct CraterCommand {
+    Crater crater;
+};
+struct FootprintsCommand {
+    std::vector<Footprint> prints;
+};
+struct SetOperatorCommand {
+    uint64_t id = 0;
+    bool enabled = true;
+};
+struct RemoveOperatorCommand {
+    uint64_t id = 0;
+};
+struct UndoCommand {};
+struct RedoCommand {};
+
+using CommandBody = std::variant<SculptCommand, PaintCommand, CraterCommand, FootprintsCommand, SetOperatorCommand,
+                                 RemoveOperatorCommand, UndoCommand, RedoCommand>;
+
+struct Command {
+    CommandBody body;
+    uint64_t group = 0; // 0: a group of its own
+};
+
+// One line of JSON. Unknown commands, unknown keys, missing or non-finite numbers are refused with what and where.
+[[nodiscard]] Result<Command> parse_command(std::string_view json_line);
+[[nodiscard]] std::string to_json(const Command& command);
+
+// Brush falloff, 1 at the centre to 0 at the rim; `t` = distance / radius. Smooth (C1) for any hardness.
+[[nodiscard]] double brush_falloff(double t, double hardness);
+
+} // namespace loam

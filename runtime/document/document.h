@@ -1,0 +1,116 @@
+// The Document: base maps, operators, journal. The only way to change it is `apply`; everybody else reads.
+//
+// Invariants
+//  1. A command is one transaction of terrain.db: after a crash every command whose `apply` returned is there, and
+//     nothing half-done.
+//  2. `undo` then `redo` (and the other way) restore pages, operators and journal bit for bit.
+//  3. A mip-m sample of a base map equals the mip-0 sample at the same place.
+//  4. Reads may come from any thread; `apply`, `undo`, `redo` and `BulkWriter` from one thread at a time. A reader sees the
+//     state before or after a command, never between (hold a ReadLock over several reads that must agree).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <shared_mutex>
+#include <span>
+#include <vector>
+
+#include "runtime/base/rect.h"
+#include "runtime/base/result.h"
+#include "runtime/document/command.h"
+#include "runtime/document/operator.h"
+#include "runtime/store/project.h"
+
+namespace loam {
+
+// World rectangles that a change touched, per map. `texture` holds what is drawn into the texture only (decals);
+// what follows from index or height is derived by the layers that read them.
+struct Dirt {
+    std::vector<WorldRect> height, index, texture;
+    [[nodiscard]] bool empty() const { return height.empty() && index.empty() && texture.empty(); }
+};
+
+enum class OpenMode { read_write, read_only };
+
+class Document {
+  public:
+    static Result<std::unique_ptr<Document>> create(const std::filesystem::path& folder, const ProjectSettings& settings);
+    static Result<std::unique_ptr<Document>> open(const std::filesystem::path& folder, OpenMode mode = OpenMode::read_write);
+    ~Document();
+    Document(const Document&) = delete;
+
+    [[nodiscard]] const std::filesystem::path& folder() const;
+    [[nodiscard]] const ProjectSettings& settings() const;
+    [[nodiscard]] WorldRect bounds() const { return settings().bounds(); }
+    [[nodiscard]] uint64_t revision() const; // grows with every change
+
+    // Undo and redo commands are applied by `apply` as well.
+    Result<Dirt> apply(const Command& command);
+    Result<Dirt> undo(); // error "nothing to undo" when there is nothing
+    Result<Dirt> redo();
+    [[nodiscard]] bool can_undo() const;
+    [[nodiscard]] bool can_redo() const;
+    struct HistoryEntry {
+        uint64_t sequence = 0, group = 0;
+        bool applied = true;
+        std::string json; // the command
+    };
+    [[nodiscard]] Result<std::vector<HistoryEntry>> history(int newest_count) const;
+    [[nodiscard]] uint64_t next_group(); // a fresh group number for a stroke
+
+    // Settings that may change later (sun, haze, layer list): writes project.toml.
+    Status change_settings(const ProjectSettings& settings);
+
+    // --- reads ---
+    using ReadLock = std::shared_lock<std::shared_mutex>;
+    [[nodiscard]] ReadLock read_lock() const;
+    // Base samples of a mip, coordinates in that mip's samples; outside the map the nearest sample inside. The caller
+    // holds a ReadLock.
+    void read_heights_mm(int mip, int x0, int y0, int width, int height, int32_t* out) const;
+    void read_index(int mip, int x0, int y0, int width, int height, IndexTexel* out) const;
+    [[nodiscard]] int height_mip_count() const; // down to one page
+    [[nodiscard]] int index_mip_count() const;
+    [[nodiscard]] glm::ivec2 index_size_texels() const; // of mip 0: covers bounds()
+    // Enabled operators whose bounds in the map overlap, in order of evaluation. Valid while the ReadLock is held.
+    void operators_over_height(const WorldRect& rect, std::vector<const Operator*>& out) const;
+    void operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const;
+    void operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const;
+    [[nodiscard]] std::vector<Operator> operators() const; // a copy, in order (outliner, info)
+    [[nodiscard]] ResolvedRoles roles() const;
+    [[nodiscard]] int layer_index(std::string_view name) const; // -1: no such layer
+
+    struct Statistics {
+        uint64_t height_pages = 0, index_pages = 0, database_bytes = 0, operators = 0, commands = 0;
+        uint64_t cached_pages = 0, cache_bytes = 0;
+    };
+    [[nodiscard]] Statistics statistics() const;
+
+    // Every page, every operator and the journal read and checked; one sentence a fault.
+    [[nodiscard]] static Result<std::vector<std::string>> verify(const std::filesystem::path& folder);
+    // A digest of all base pages and operators, for tests: equal digests, equal documents.
+    [[nodiscard]] Result<uint64_t> content_digest() const;
+
+  private:
+    friend class BulkWriter;
+    struct Impl;
+    explicit Document(std::unique_ptr<Impl> impl);
+    std::unique_ptr<Impl> impl_;
+};
+
+// Writes whole maps (import, recipes) without journal: rows south to north, any number at a time; `finish` builds the mips
+// and commits. Dropped without `finish`: nothing changed. Refused when the journal holds commands (they could not be undone).
+class BulkWriter {
+  public:
+    explicit BulkWriter(Document& document);
+    ~BulkWriter();
+    Status write_height_rows(int first_row, int row_count, std::span<const int32_t> mm);
+    Status write_index_rows(int first_row, int row_count, std::span<const IndexTexel> texels);
+    Status finish();
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+} // namespace loam
