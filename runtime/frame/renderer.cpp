@@ -1,0 +1,399 @@
+#include "runtime/frame/renderer.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/base/check.h"
+#include "runtime/frame/targets.h"
+#include "runtime/geometry/patch_tree.h"
+#include "runtime/geometry/terrain_pass.h"
+#include "runtime/maps/height_map.h"
+#include "runtime/maps/index_map.h"
+#include "runtime/scene/shadow_cascades.h"
+#include "runtime/scene/sun_sky.h"
+#include "runtime/texture/layer_set.h"
+#include "shaders/frame/resolve_io.h"
+
+namespace loam {
+
+using gpu::Access;
+
+namespace {
+
+// What a device profile changes. Software figures follow the measurements of the platform: about 50,000 triangles a frame,
+// one or two whole texture pages a frame, uncompressed pages (their samples are twice as fast there as BC1's).
+struct ProfileDefaults {
+    PageFormat page_format;
+    int page_budget;
+    int height_pages, index_pages; // composed a frame
+    double split_distance;
+    uint32_t shadow_texels;
+    int shadow_budget;             // cascades drawn a frame
+};
+
+ProfileDefaults profile_defaults(gpu::Profile profile) {
+    if (profile == gpu::Profile::software) return {PageFormat::rgba8, 2, 8, 4, 1.3, 1024, 1};
+    return {PageFormat::bc1x3, 12, 32, 16, 2.5, 2048, 4};
+}
+
+int pages_per_side(Quality quality) {
+    switch (quality) {
+        case Quality::very_low: return 13;
+        case Quality::low: return 16;
+        case Quality::mid: return 22;
+        case Quality::high: return 30;
+        case Quality::ultra: return 42;
+    }
+    return 16;
+}
+
+enum class ResolveKind { fast, fine, debug, direct };
+constexpr size_t kResolveKinds = 4;
+
+} // namespace
+
+struct Renderer::Impl {
+    Impl(gpu::Device& d, Document& doc, const RendererDesc& r)
+        : device(d), document(doc), desc(r), defaults(profile_defaults(d.caps().profile)) {}
+
+    gpu::Device& device;
+    Document& document;
+    RendererDesc desc;
+    ProfileDefaults defaults;
+
+    std::unique_ptr<HeightMap> heights;
+    std::unique_ptr<IndexMap> indices;
+    std::unique_ptr<LayerSet> layers;
+    std::unique_ptr<VirtualTexture> texture;
+    std::unique_ptr<TerrainPass> terrain;
+    std::unique_ptr<ShadowCascades> shadows;
+    FrameTargets targets;
+    gpu::Sampler point, linear;
+    gpu::Pipeline sky;
+    gpu::Pipeline resolve[kResolveKinds];
+
+    uint64_t frame = 0;
+    glm::uvec2 picture_size{0};
+    bool settled = false;
+    bool changed = true; // something changed since the last frame
+    PatchSet patches;
+    Camera last_camera;
+    uint32_t cascades_drawn = 0;
+
+    Status make_pipelines();
+    Result<gpu::Pipeline*> resolve_pipeline(ResolveKind kind);
+    Status create_texture(gpu::FrameRing& ring);
+    [[nodiscard]] shared::FrameUniforms uniforms(const Camera& camera, glm::uvec2 size, const FrameSettings& settings) const;
+    void prepass(gpu::Commands& commands, glm::uvec2 size, const shared::FrameUniforms& u);
+    Status light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& uniform_slice,
+                 const Camera& camera, const FrameSettings& settings);
+};
+
+Renderer::Renderer() = default;
+Renderer::~Renderer() = default;
+
+Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::FrameRing& ring, Document& document,
+                                                   const RendererDesc& desc) {
+    std::unique_ptr<Renderer> renderer(new Renderer);
+    renderer->impl_ = std::make_unique<Impl>(device, document, desc);
+    Impl& r = *renderer->impl_;
+
+    auto heights = HeightMap::create(&device, document, {.slot_count = desc.height_slots});
+    if (!heights) return heights.error();
+    r.heights = std::move(*heights);
+    auto indices = IndexMap::create(&device, document, {.slot_count = desc.index_slots});
+    if (!indices) return indices.error();
+    r.indices = std::move(*indices);
+    LOAM_TRY(r.create_texture(ring));
+    auto terrain = TerrainPass::create(device, {kGbufferFormat, kOcclusionFormat}, device.caps().depth_stencil);
+    if (!terrain) return terrain.error();
+    r.terrain = std::make_unique<TerrainPass>(std::move(*terrain));
+    auto shadows = ShadowCascades::create(device, r.defaults.shadow_texels);
+    if (!shadows) return shadows.error();
+    r.shadows = std::make_unique<ShadowCascades>(std::move(*shadows));
+    LOAM_TRY(r.make_pipelines());
+    return renderer;
+}
+
+Status Renderer::Impl::create_texture(gpu::FrameRing& ring) {
+    auto set = LayerSet::create(ring, document);
+    if (!set) return set.error();
+    texture.reset();
+    layers = std::move(*set);
+    PageFormat format = desc.page_format.value_or(defaults.page_format);
+    if (format == PageFormat::bc1x3 && !device.caps().bc) format = PageFormat::rgba8;
+    VirtualTextureDesc wanted{.pages_per_side = pages_per_side(desc.quality),
+                              .indirection_size = desc.quality >= Quality::high ? 1024 : 512,
+                              .format = format,
+                              .budget_pages = desc.page_budget > 0 ? desc.page_budget : defaults.page_budget};
+    // Live sectors are 64x64 texels of the indirection each: 512 holds 48 beside a default sector of 128x128.
+    wanted.max_live_sectors = wanted.indirection_size == 512 ? 40 : 200;
+    auto made = VirtualTexture::create(device, document, *indices, *layers, wanted);
+    if (!made) return made.error();
+    texture = std::move(*made);
+    return {};
+}
+
+Status Renderer::settings_changed(gpu::FrameRing& ring) {
+    impl_->changed = true;
+    if (impl_->layers->names.size() == impl_->document.settings().layers.size()) return {};
+    return impl_->create_texture(ring);
+}
+
+Status Renderer::Impl::make_pipelines() {
+    auto p = gpu::Sampler::create(device, {.filter = VK_FILTER_NEAREST});
+    if (!p) return p.error();
+    point = std::move(*p);
+    auto l = gpu::Sampler::create(device, {});
+    if (!l) return l.error();
+    linear = std::move(*l);
+    auto made = gpu::Pipeline::create(device, gpu::GraphicsDesc{.name = "sky",
+                                                                .vertex_shader = "frame/fullscreen.vert",
+                                                                .fragment_shader = "frame/sky.frag",
+                                                                .bindings = {gpu::storage_buffer(0)},
+                                                                .color_formats = {kPictureFormat},
+                                                                .depth_format = device.caps().depth_stencil,
+                                                                .stencil = {.enable = true,
+                                                                            .compare = VK_COMPARE_OP_NOT_EQUAL,
+                                                                            .reference = 1,
+                                                                            .write_mask = 0}});
+    if (!made) return made.error();
+    sky = std::move(*made);
+    for (ResolveKind kind : {ResolveKind::fast, ResolveKind::fine})
+        if (auto pipeline = resolve_pipeline(kind); !pipeline) return pipeline.error();
+    return {};
+}
+
+Result<gpu::Pipeline*> Renderer::Impl::resolve_pipeline(ResolveKind kind) {
+    gpu::Pipeline& pipeline = resolve[size_t(kind)];
+    if (pipeline) return &pipeline;
+    const bool direct = kind == ResolveKind::direct;
+    gpu::GraphicsDesc d{.name = direct ? "resolve direct" : "resolve",
+                        .vertex_shader = "frame/fullscreen.vert",
+                        .fragment_shader = direct ? "frame/resolve_direct.frag" : "frame/resolve.frag",
+                        .push_bytes = sizeof(shared::ResolvePush),
+                        .constants = {{0, kind == ResolveKind::fast ? 0u : 1u}, {1, kind == ResolveKind::debug ? 1u : 0u}},
+                        .color_formats = {kPictureFormat},
+                        .depth_format = device.caps().depth_stencil,
+                        .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
+    d.bindings = {gpu::storage_buffer(0), gpu::sampled_image(1), gpu::sampled_image(2), gpu::sampled_image(3),
+                  gpu::sampled_image(4)};
+    const auto material = direct ? direct_bindings() : vt_bindings();
+    d.bindings.insert(d.bindings.end(), material.begin(), material.end());
+    auto made = gpu::Pipeline::create(device, d);
+    if (!made) return made.error();
+    pipeline = std::move(*made);
+    return &pipeline;
+}
+
+shared::FrameUniforms Renderer::Impl::uniforms(const Camera& camera, glm::uvec2 size,
+                                               const FrameSettings& settings) const {
+    shared::FrameUniforms u{};
+    const glm::dmat4 clip = camera.clip_from_rel(size.x, size.y, settings.jitter_px);
+    u.clip_from_rel = glm::mat4(clip);
+    u.rel_from_clip = glm::mat4(glm::inverse(clip));
+    const ProjectSettings& project = document.settings();
+    fill_sun_sky({project.sun_azimuth_rad, project.sun_elevation_rad, project.haze_per_km}, u);
+    u.picture_px = glm::vec2(size);
+    u.inv_picture_px = 1.0f / glm::vec2(size);
+    u.camera_z_m = float(camera.position_m.z);
+    u.near_m = float(camera.near_m);
+    u.frame = uint32_t(frame);
+    return u;
+}
+
+void Renderer::Impl::prepass(gpu::Commands& commands, glm::uvec2 size, const shared::FrameUniforms& u) {
+    const auto pass = commands.pass("prepass", {{targets.depth, Access::depth_target},
+                                                {targets.gbuffer, Access::color_target},
+                                                {targets.occlusion, Access::color_target},
+                                                {heights->heights(), Access::vertex_read},
+                                                {heights->normals(), Access::fragment_sampled}});
+    const gpu::ColorTarget colors[] = {{targets.gbuffer.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}},
+                                       {targets.occlusion.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}}};
+    commands.begin_rendering({size.x, size.y}, colors,
+                             {.view = targets.depth.view(), .load = VK_ATTACHMENT_LOAD_OP_CLEAR, .has_stencil = true});
+    commands.set_viewport(0, 0, float(size.x), float(size.y));
+    terrain->cmd_draw_prepass(commands, patches, *heights, u.clip_from_rel, last_camera.position_m);
+    commands.end_rendering();
+}
+
+Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& slice,
+                             const Camera& camera, const FrameSettings& settings) {
+    const bool direct = settings.shading == Shading::direct;
+    const ResolveKind kind = direct                                 ? ResolveKind::direct
+                             : settings.debug != DebugView::none    ? ResolveKind::debug
+                             : settings.fine_filter                 ? ResolveKind::fine
+                                                                    : ResolveKind::fast;
+    auto pipeline = resolve_pipeline(kind);
+    if (!pipeline) return pipeline.error();
+    if (direct)
+        use_direct_inputs(commands, *indices, *layers);
+    else
+        texture->use_inputs(commands);
+
+    const auto pass = commands.pass("resolve", {{targets.picture, Access::color_target},
+                                                {targets.depth, Access::depth_sampled},
+                                                {targets.gbuffer, Access::fragment_sampled},
+                                                {targets.occlusion, Access::fragment_sampled},
+                                                {shadows->atlas(), Access::fragment_sampled}});
+    const gpu::ColorTarget colors[] = {{targets.picture.view(), VK_ATTACHMENT_LOAD_OP_DONT_CARE, {}}};
+    commands.begin_rendering({size.x, size.y}, colors,
+                             {.view = targets.depth.view(), .has_stencil = true, .read_only = true});
+    commands.set_viewport(0, 0, float(size.x), float(size.y));
+
+    const gpu::Bound frame_bound(0, *slice.buffer, slice.offset, slice.size_bytes);
+    commands.bind(sky, {frame_bound});
+    commands.draw(3);
+
+    std::vector<gpu::Bound> bound = {
+        frame_bound,
+        {1, targets.depth.depth_view(), point, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL},
+        {2, targets.gbuffer.view(), point},
+        {3, targets.occlusion.view(), point},
+        {4, shadows->atlas().view(), shadows->sampler()},
+    };
+    const auto material = direct ? direct_bound(*indices, *layers) : texture->bound();
+    bound.insert(bound.end(), material.begin(), material.end());
+    commands.bind(**pipeline, bound);
+    const glm::dvec2 ring = settings.ring_center_m - glm::dvec2(camera.position_m);
+    commands.push(**pipeline, shared::ResolvePush{glm::vec2(ring), float(settings.ring_radius_m), settings.ring_inner,
+                                                  uint32_t(settings.debug)});
+    commands.draw(3);
+    commands.end_rendering();
+    return {};
+}
+
+void Renderer::on_dirt(const Dirt& dirt) {
+    Impl& r = *impl_;
+    r.changed = true;
+    r.heights->on_dirt(dirt.height);
+    r.shadows->on_dirt(dirt.height);
+    r.indices->on_dirt(dirt.index);
+    // A texel blends the index texels around it: one spacing on each side.
+    std::vector<WorldRect> texture = dirt.texture;
+    for (const WorldRect& rect : dirt.index)
+        texture.push_back(rect.grown(r.document.settings().index_spacing_m));
+    r.texture->on_dirt(texture);
+}
+
+// The frame, top to bottom.
+Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Camera& camera, glm::uvec2 extent,
+                        const FrameSettings& settings) {
+    Impl& r = *impl_;
+    ++r.frame;
+    const float scale = std::clamp(settings.render_scale, 0.1f, 1.0f);
+    const glm::uvec2 size = glm::max(glm::uvec2(glm::round(glm::vec2(extent) * scale)), glm::uvec2(8));
+    LOAM_TRY(r.targets.ensure(r.device, glm::max(extent, size)));
+    r.picture_size = size;
+    r.last_camera = camera;
+
+    shared::FrameUniforms u = r.uniforms(camera, size, settings);
+
+    // Pages: the cut of the height map, what it lacks, and what the texture needs of the index map.
+    const double split = r.desc.patch_split_distance > 0 ? r.desc.patch_split_distance : r.defaults.split_distance;
+    r.patches = select_patches(*r.heights, {.camera_m = camera.position_m,
+                                            .clip_from_rel = camera.clip_from_rel(size.x, size.y, settings.jitter_px),
+                                            .split_distance = split});
+    const TextureView view{.camera_m = camera.position_m,
+                           .pixels_per_radian = size.y * 0.5 / std::tan(camera.fov_y_rad * 0.5),
+                           .frame = r.frame};
+    r.texture->request_inputs(view);
+    LOAM_TRY(r.heights->update(ring, commands, r.frame, r.defaults.height_pages));
+    LOAM_TRY(r.indices->update(ring, commands, r.frame, r.defaults.index_pages));
+    LOAM_TRY(r.texture->update(ring, commands, view));
+    LOAM_TRY(r.terrain->upload(ring, commands, r.patches));
+
+    // Shadows: only the cascades that something has changed in.
+    if (r.desc.shadows)
+        LOAM_TRY(r.shadows->update(commands, *r.terrain, r.patches, *r.heights, camera.position_m,
+                                   sun_direction({.azimuth_rad = r.document.settings().sun_azimuth_rad,
+                                                  .elevation_rad = r.document.settings().sun_elevation_rad}),
+                                   r.defaults.shadow_budget, u));
+
+    const gpu::UploadSlice slice = ring.upload(sizeof(u));
+    *slice.as<shared::FrameUniforms>() = u;
+
+    // Depth, stencil, geometric normal, footprint.
+    r.prepass(commands, size, u);
+    // Which pages the picture would like to have.
+    if (settings.shading == Shading::virtual_texture)
+        LOAM_TRY(r.texture->record_feedback(ring, commands, r.targets.depth, r.targets.gbuffer, *slice.buffer,
+                                            slice.offset));
+    // Sky, then the terrain's pixels from the virtual texture.
+    LOAM_TRY(r.light(commands, size, slice, camera, settings));
+    commands.use({{r.targets.picture, Access::fragment_sampled}});
+
+    r.settled = !r.changed && r.texture->settled() && !r.heights->has_work() && !r.indices->has_work() &&
+                (!r.desc.shadows || r.shadows->settled());
+    r.changed = false;
+    return {};
+}
+
+gpu::Image& Renderer::picture() {
+    return impl_->targets.picture;
+}
+glm::uvec2 Renderer::picture_size() const {
+    return impl_->picture_size;
+}
+gpu::Image& Renderer::gbuffer() {
+    return impl_->targets.gbuffer;
+}
+gpu::Image& Renderer::depth() {
+    return impl_->targets.depth;
+}
+bool Renderer::settled() const {
+    return impl_->settled;
+}
+
+uint32_t Renderer::pending_pages() const {
+    const auto t = impl_->texture->statistics();
+    return t.missing_pages + t.dirty_pages + (impl_->heights->has_work() ? 1 : 0) + (impl_->indices->has_work() ? 1 : 0);
+}
+
+double Renderer::height_m(double x_m, double y_m) {
+    return impl_->heights->height_m(x_m, y_m);
+}
+glm::dvec3 Renderer::normal(double x_m, double y_m) {
+    return impl_->heights->normal(x_m, y_m);
+}
+IndexTexel Renderer::layer_at(double x_m, double y_m) {
+    return impl_->indices->texel_at(x_m, y_m);
+}
+std::optional<glm::dvec3> Renderer::ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m) {
+    return impl_->heights->ray_cast(origin_m, direction, max_m);
+}
+const LayerSet& Renderer::layers() const {
+    return *impl_->layers;
+}
+
+FrameStatistics Renderer::statistics() const {
+    const Impl& r = *impl_;
+    FrameStatistics s;
+    s.patches = uint32_t(r.patches.patches.size());
+    s.patches_visible = uint32_t(r.patches.visible_count);
+    s.triangles = s.patches_visible * kPatchQuads * kPatchQuads * 2;
+    r.heights->map().for_each_resident([&](const MapPage&, int, const TexelRect&) { ++s.height_pages; });
+    r.indices->map().for_each_resident([&](const MapPage&, int, const TexelRect&) { ++s.index_pages; });
+    s.shadow_cascades_drawn = r.shadows->drawn();
+    s.texture = r.texture->statistics();
+    s.height = r.heights->map().counters();
+    s.index = r.indices->map().counters();
+    s.memory = {{"height pages (GPU)", r.heights->gpu_bytes()},
+                {"height pages (CPU)", r.heights->cpu_bytes()},
+                {"index pages (GPU)", r.indices->gpu_bytes()},
+                {"virtual texture", s.texture.gpu_bytes},
+                {"layers", r.layers->albedo_reveal.bytes() + r.layers->normal_gloss_occlusion.bytes() +
+                               r.layers->metalness.bytes()},
+                {"shadow atlas", r.shadows->atlas().bytes()},
+                {"frame targets", r.targets.bytes()}};
+    return s;
+}
+
+Result<uint32_t> Renderer::count_stale_pages(gpu::FrameRing& ring) {
+    Impl& r = *impl_;
+    auto stale = r.texture->count_stale_pages(ring);
+    if (!stale) return stale.error();
+    return *stale + r.heights->count_stale_pages(r.document) + r.indices->count_stale_pages(r.document);
+}
+
+} // namespace loam
