@@ -70,7 +70,7 @@ struct TexelRect {
 [[nodiscard]] inline TexelRect aligned_out(const TexelRect& r, int step, int size) {
     const auto down = [step](int v) { return v >= 0 ? v / step * step : -((-v + step - 1) / step * step); };
     const auto up = [&](int v) { return -down(-v); };
-    return intersected({down(r.x0), down(r.y0), up(r.x1), up(r.y1)}, {0, 0, size, size});
+    return intersected(TexelRect{down(r.x0), down(r.y0), up(r.x1), up(r.y1)}, TexelRect{0, 0, size, size});
 }
 
 } // namespace loam
