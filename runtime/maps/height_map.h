@@ -31,7 +31,7 @@ struct HeightPage {
     float min_m = 0, max_m = 0;     // of the payload and its far edge (samples 0 … 64)
 };
 
-struct HeightMapDesc {
+struct HeightMapDesc { // gpu memory: slot_count * 68 * 68 * 12 bytes
     int slot_count = 144;
     bool gpu = true; // false: CPU queries only (no device needed)
 };
@@ -45,22 +45,32 @@ class HeightMap {
     [[nodiscard]] const VirtualMap& map() const;
     void request(const MapPage& page, float priority);
     void on_dirt(std::span<const WorldRect> rects);
-    // Composes at most `new_pages` whole pages and every dirty rectangle of requested pages; records the uploads.
+    // Composes at most `new_pages` whole pages and every dirty rectangle of requested pages; records the uploads and leaves
+    // both arrays ready to be read in vertex and fragment shaders.
     Status update(gpu::FrameRing& ring, gpu::Commands& commands, uint64_t frame, int new_pages);
+    // The same without a device (desc.gpu false).
+    void update_without_gpu(uint64_t frame, int new_pages);
     [[nodiscard]] bool has_work() const;
 
     [[nodiscard]] gpu::Image& heights(); // R32_SFLOAT 68x68, one layer a slot
     [[nodiscard]] gpu::Image& normals(); // RGBA16_SFLOAT 68x68, one layer a slot
+    [[nodiscard]] const gpu::Image& heights() const;
+    [[nodiscard]] const gpu::Image& normals() const;
     [[nodiscard]] const HeightPage* resident_page(const MapPage& page) const; // null: not resident
 
-    // --- queries, at the finest level, whatever is resident; any thread but not during update ---
-    [[nodiscard]] double height_m(double x_m, double y_m);      // bilinear in the finest samples; clamped to the map
-    [[nodiscard]] glm::dvec3 normal(double x_m, double y_m);
-    // First hit of a ray with the surface of the finest level, within max_m; origin and direction in world metres.
+    // --- queries, at the finest level, whatever is resident; any thread but not during update or on_dirt ---
+    // What was composed before on_dirt is never used after it, so that a query right after an edit sees the edit.
+    [[nodiscard]] double height_m(double x_m, double y_m);      // bilinear in the finest samples; clamped to the map; NaN: at 0
+    [[nodiscard]] glm::dvec3 normal(double x_m, double y_m);    // central differences at the finest spacing, bilinear
+    // First hit of a ray with the surface of the finest level, within max_m; origin and direction in world metres. The
+    // surface is that of height_m, over the map only; a ray from below the ground hits it from below. Nothing for a
+    // direction of no length and for anything not finite (max_m may be infinite).
     [[nodiscard]] std::optional<glm::dvec3> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m);
 
     // The composer, a pure function of the document: fills `rect` (texels with border) of `page`. Heights and normals both.
     static void compose(const Document& document, const VirtualMap& map, const MapPage& page, const TexelRect& rect, HeightPage& out);
+    // Tests: resident pages without dirt that differ in any bit from what `document` gives when composed from nothing.
+    [[nodiscard]] uint32_t count_stale_pages(const Document& document) const;
     [[nodiscard]] uint64_t gpu_bytes() const;
     [[nodiscard]] uint64_t cpu_bytes() const;
 

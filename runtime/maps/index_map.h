@@ -33,7 +33,10 @@ class IndexMap {
     void request(const MapPage& page, float priority);
     void on_dirt(std::span<const WorldRect> rects);
     Status update(gpu::FrameRing& ring, gpu::Commands& commands, uint64_t frame, int new_pages);
+    // The same without a device (desc.gpu false).
+    void update_without_gpu(uint64_t frame, int new_pages);
     [[nodiscard]] bool has_work() const;
+    [[nodiscard]] const IndexTexel* resident_page(const MapPage& page) const; // 136 x 136; null: not resident
 
     [[nodiscard]] gpu::Image& indices(); // R16_UINT 136x136, one layer a slot
     [[nodiscard]] gpu::Image& tints();   // RGBA8_UNORM (sRGB-encoded) 136x136, one layer a slot
@@ -48,6 +51,8 @@ class IndexMap {
 
     static void compose(const Document& document, const VirtualMap& map, const MapPage& page, const TexelRect& rect,
                         std::span<IndexTexel> out); // out: whole page, 136 x 136
+    // Tests: resident pages without dirt that differ in any bit from what `document` gives when composed from nothing.
+    [[nodiscard]] uint32_t count_stale_pages(const Document& document) const;
     [[nodiscard]] uint64_t gpu_bytes() const;
 
   private:

@@ -10,6 +10,8 @@
 //  3. The root page (the coarsest level) is resident from the first update on and never ejected.
 //  4. A resident page with an empty dirty rectangle equals compose(page) from nothing, bit for bit.
 //
+// Page p's texel t, 0 <= t < page_texels(), is sample payload * p + t - border of its level, at world (sample * spacing).
+//
 //   absent ──request, slot free or less wanted──▶ composing ──next update──▶ resident ──invalidate──▶ resident + dirty
 //      ▲                                                                         │                        │ recomposed rect
 //      └───────────────────── ejected (rests 3 frames) ◀─────────────────────────┘◀───────────────────────┘
@@ -19,6 +21,7 @@
 #include <functional>
 #include <span>
 #include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/rect.h"
@@ -64,6 +67,7 @@ class VirtualMap {
     [[nodiscard]] MapPage root() const { return {desc_.level_count - 1, 0, 0}; }
 
     [[nodiscard]] int slot_of(const MapPage& page) const; // -1: not resident
+    [[nodiscard]] TexelRect dirty_of(int slot) const;     // of the page in the slot; what is being composed included
     // The page itself if resident, else its nearest resident ancestor.
     [[nodiscard]] MapPage finest_resident(MapPage page) const;
 
@@ -77,14 +81,19 @@ class VirtualMap {
     };
     // Chooses at most `new_pages` pages to compose, most wanted first, ejecting the least wanted where needed, and all dirty
     // rectangles of resident pages that are among this frame's requests (the others keep their dirt). The cache is always filled.
+    // Work of the last plan that was not finished is dropped: its slot is free again, its rectangle dirty again.
     [[nodiscard]] std::vector<Work> plan(uint64_t frame, int new_pages);
-    // The work has been composed and its upload recorded: the page is in the table from now on, its dirt is cleared.
+    // The work has been composed and its upload recorded: the page is in the table from now on, its dirt is cleared (but for
+    // what was invalidated since `plan`).
     void finish(const Work& work);
 
     // Texels of every resident page whose samples lie in `rect` become dirty. Returns the number of pages touched.
-    int invalidate(const WorldRect& rect);
+    // `grow_texels`: by so many texels of each page's own level more, for composers that look at neighbouring texels.
+    int invalidate(const WorldRect& rect, int grow_texels = 0);
 
-    [[nodiscard]] bool has_work() const; // requested pages absent or requested pages dirty, as of the last plan
+    // Requested pages absent or requested pages dirty, as of the last plan: one more frame is worth drawing. A page that
+    // is wanted less than everything in a full cache does not count.
+    [[nodiscard]] bool has_work() const;
     struct Counters {
         uint64_t pages_composed = 0, texels_composed = 0, pages_dirtied = 0, ejected = 0;
     };
@@ -109,10 +118,17 @@ class VirtualMap {
         MapPage page;
         bool used = false, in_table = false;
         TexelRect dirty;
+        TexelRect planned;          // handed out by the last plan, not finished yet
         float priority = 0;         // of this frame, 0 when not requested
         uint64_t last_requested = 0;
         uint64_t free_from_frame = 0; // rests until then
     };
+    void drop_unfinished();
+    [[nodiscard]] std::vector<std::pair<MapPage, float>> take_requests(size_t missing_limit, size_t& missing_count);
+    [[nodiscard]] int least_wanted_slot() const;
+    void eject(int slot);
+    [[nodiscard]] uint32_t table_entry(const MapPage& page) const;
+
     VirtualMapDesc desc_;
     std::vector<Slot> slots_;
     std::unordered_map<MapPage, int, MapPageHash> table_;
@@ -120,7 +136,7 @@ class VirtualMap {
     std::vector<uint32_t> level_offsets_;
     std::vector<TableChange> table_changes_;
     Counters counters_;
-    bool has_work_ = false;
+    bool has_work_ = true;
     uint64_t frame_ = 0;
 };
 

@@ -1,0 +1,28 @@
+// The steps of HeightMap::compose that queries use alone. All are pure functions of the document.
+//
+// Source of the ambient occlusion: horizon angles as in Max, "Horizon Mapping" (1988); the cosine-weighted share of the sky
+// above a horizon of slope t is 1 / (1 + t²) a direction. What differs: slopes are taken relative to the tangent
+// plane, so that an even slope is open.
+#pragma once
+
+#include <glm/vec2.hpp>
+
+#include "runtime/maps/height_map.h"
+
+namespace loam {
+
+// Heights in metres, row-major, at samples first + (i, j) of a level: base samples (bicubic where the level is finer
+// than the base, exactly through the samples), then operators. The caller holds the document's ReadLock.
+void compose_heights(const Document& document, const VirtualMap& map, int level, glm::ivec2 first, glm::ivec2 size,
+                     double* out_m);
+
+// The heights alone of a whole page with its border, as HeightPage has them. Takes the ReadLock.
+void compose_page_heights(const Document& document, const VirtualMap& map, const MapPage& page, float* out_m);
+
+// Catmull-Rom weights of the four samples around a place, 0 <= f < 1 between the middle two.
+struct CubicWeights {
+    double w[4];
+};
+[[nodiscard]] CubicWeights catmull_rom(double f);
+
+} // namespace loam

@@ -1,0 +1,242 @@
+#include "runtime/maps/index_map.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "runtime/base/check.h"
+#include "runtime/base/job_queue.h"
+#include "runtime/document/document.h"
+#include "runtime/maps/base_window.h"
+#include "runtime/maps/rect_upload.h"
+
+namespace loam {
+
+namespace {
+
+constexpr size_t kPageTexels = size_t(kIndexTexels) * kIndexTexels;
+constexpr int64_t kParallelTexels = 30'000; // an index page takes about 0.1 ms
+
+struct IndexPage {
+    std::vector<IndexTexel> texels;
+    // The same as the GPU has them; the tint's fourth byte is 255.
+    std::vector<uint16_t> layers;
+    std::vector<uint32_t> tints;
+};
+
+VirtualMapDesc map_desc(const Document& document, int slot_count) {
+    VirtualMapDesc desc;
+    desc.payload_texels = kIndexPayload;
+    desc.border_texels = kIndexBorder;
+    desc.slot_count = slot_count;
+    desc.spacing_m = document.settings().index_spacing_m;
+    desc.bounds = document.bounds();
+    const double extent_m = std::max({desc.bounds.max_x, desc.bounds.max_y, desc.spacing_m});
+    desc.level_count = level_count_for(extent_m, desc.spacing_m, kIndexPayload);
+    return desc;
+}
+
+void compose_page(const Document& document, const VirtualMap& map, const VirtualMap::Work& work, IndexPage& page) {
+    page.texels.resize(kPageTexels);
+    page.layers.resize(kPageTexels);
+    page.tints.resize(kPageTexels);
+    IndexMap::compose(document, map, work.page, work.rect, page.texels);
+    for (int y = work.rect.y0; y < work.rect.y1; ++y)
+        for (int x = work.rect.x0; x < work.rect.x1; ++x) {
+            const size_t i = size_t(y) * kIndexTexels + size_t(x);
+            const IndexTexel& t = page.texels[i];
+            page.layers[i] = t.layer;
+            page.tints[i] = 0xff000000u | uint32_t(t.tint[2]) << 16 | uint32_t(t.tint[1]) << 8 | t.tint[0];
+        }
+}
+
+} // namespace
+
+struct IndexMap::Impl {
+    Impl(const Document& d, const VirtualMapDesc& desc) : document(d), map(desc), pages(size_t(desc.slot_count)) {}
+
+    std::vector<VirtualMap::Work> compose_planned(uint64_t frame, int new_pages);
+    Status cmd_update_table(gpu::FrameRing& ring, gpu::Commands& commands);
+
+    const Document& document;
+    VirtualMap map;
+    std::vector<IndexPage> pages; // one a slot
+    gpu::Image indices, tints;
+    gpu::Buffer page_table;
+    bool table_cleared = false;
+};
+
+IndexMap::IndexMap() = default;
+IndexMap::~IndexMap() = default;
+
+Result<std::unique_ptr<IndexMap>> IndexMap::create(gpu::Device* device, const Document& document,
+                                                   const IndexMapDesc& desc) {
+    if (desc.slot_count < 1) return error("an index map needs at least one slot, not {}", desc.slot_count);
+    std::unique_ptr<IndexMap> map(new IndexMap);
+    map->impl_ = std::make_unique<Impl>(document, map_desc(document, desc.slot_count));
+    if (!desc.gpu) return map;
+
+    LOAM_CHECK(device, "an index map with GPU arrays needs a device");
+    gpu::ImageDesc image;
+    image.width = image.height = kIndexTexels;
+    image.layer_count = uint32_t(desc.slot_count);
+    image.array_view = true;
+    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    image.name = "layer indices";
+    image.format = VK_FORMAT_R16_UINT;
+    auto indices = gpu::Image::create(*device, image);
+    if (!indices) return indices.error();
+    image.name = "layer tints";
+    image.format = VK_FORMAT_R8G8B8A8_UNORM;
+    auto tints = gpu::Image::create(*device, image);
+    if (!tints) return tints.error();
+    gpu::BufferDesc table;
+    table.name = "index page table";
+    table.size_bytes = uint64_t(map->impl_->map.table_entry_count()) * sizeof(uint32_t);
+    table.usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    auto page_table = gpu::Buffer::create(*device, table);
+    if (!page_table) return page_table.error();
+    map->impl_->indices = std::move(*indices);
+    map->impl_->tints = std::move(*tints);
+    map->impl_->page_table = std::move(*page_table);
+    return map;
+}
+
+const VirtualMap& IndexMap::map() const {
+    return impl_->map;
+}
+
+void IndexMap::request(const MapPage& page, float priority) {
+    impl_->map.request(page, priority);
+}
+
+void IndexMap::on_dirt(std::span<const WorldRect> rects) {
+    for (const WorldRect& rect : rects)
+        impl_->map.invalidate(extended_beyond_edges(rect, impl_->document.bounds()));
+}
+
+std::vector<VirtualMap::Work> IndexMap::Impl::compose_planned(uint64_t frame, int new_pages) {
+    std::vector<VirtualMap::Work> work = map.plan(frame, new_pages);
+    int64_t texels = 0;
+    for (const auto& w : work) texels += w.rect.area();
+    const int count = int(work.size());
+    const auto compose_range = [&](int begin, int end) {
+        for (int i = begin; i < end; ++i)
+            compose_page(document, map, work[size_t(i)], pages[size_t(work[size_t(i)].slot)]);
+    };
+    parallel_ranges(count, texels >= kParallelTexels ? 1 : std::max(count, 1), compose_range);
+    return work;
+}
+
+// Only the last change of an entry counts: regions of one copy must not overlap.
+Status IndexMap::Impl::cmd_update_table(gpu::FrameRing& ring, gpu::Commands& commands) {
+    const std::vector<VirtualMap::TableChange> changes = map.take_table_changes();
+    if (table_cleared && changes.empty()) return {};
+    commands.use({{page_table, gpu::Access::copy_target}});
+    if (!table_cleared) {
+        vkCmdFillBuffer(commands.handle(), page_table.handle(), 0, VK_WHOLE_SIZE, VirtualMap::kNoSlot);
+        commands.use({{page_table, gpu::Access::copy_target}});
+        table_cleared = true;
+    }
+    std::unordered_map<uint32_t, uint32_t> newest;
+    for (const auto& change : changes) newest[change.entry] = change.slot;
+    if (newest.empty()) return {};
+    const gpu::UploadSlice slice = ring.upload(newest.size() * sizeof(uint32_t));
+    if (!slice.data) return error("no memory for {} page table entries", newest.size());
+    std::vector<VkBufferCopy> copies;
+    for (const auto& [entry, slot] : newest) {
+        const uint64_t offset = copies.size() * sizeof(uint32_t);
+        std::memcpy(static_cast<std::byte*>(slice.data) + offset, &slot, sizeof slot);
+        copies.push_back({slice.offset + offset, uint64_t(entry) * sizeof(uint32_t), sizeof slot});
+    }
+    vkCmdCopyBuffer(commands.handle(), slice.buffer->handle(), page_table.handle(), uint32_t(copies.size()), copies.data());
+    return {};
+}
+
+Status IndexMap::update(gpu::FrameRing& ring, gpu::Commands& commands, uint64_t frame, int new_pages) {
+    LOAM_CHECK(impl_->indices, "an index map without GPU arrays is updated by update_without_gpu");
+    const std::vector<VirtualMap::Work> work = impl_->compose_planned(frame, new_pages);
+    std::vector<RectUpload> indices, tints;
+    for (const VirtualMap::Work& w : work) {
+        const IndexPage& page = impl_->pages[size_t(w.slot)];
+        indices.push_back({w.rect, uint32_t(w.slot), page.layers.data()});
+        tints.push_back({w.rect, uint32_t(w.slot), page.tints.data()});
+    }
+    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->indices, 2, indices));
+    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->tints, 4, tints));
+    for (const VirtualMap::Work& w : work) impl_->map.finish(w);
+    return impl_->cmd_update_table(ring, commands);
+}
+
+void IndexMap::update_without_gpu(uint64_t frame, int new_pages) {
+    for (const VirtualMap::Work& w : impl_->compose_planned(frame, new_pages)) impl_->map.finish(w);
+}
+
+bool IndexMap::has_work() const {
+    return impl_->map.has_work();
+}
+
+gpu::Image& IndexMap::indices() {
+    return impl_->indices;
+}
+
+gpu::Image& IndexMap::tints() {
+    return impl_->tints;
+}
+
+gpu::Buffer& IndexMap::page_table() {
+    return impl_->page_table;
+}
+
+const IndexTexel* IndexMap::resident_page(const MapPage& page) const {
+    const int slot = impl_->map.slot_of(page);
+    return slot < 0 ? nullptr : impl_->pages[size_t(slot)].texels.data();
+}
+
+MapPage IndexMap::page_for_square(double min_x_m, double min_y_m, double side_m) const {
+    const VirtualMap& map = impl_->map;
+    MapPage page;
+    while (page.level < map.root().level && map.page_size_m(page.level) < side_m) ++page.level;
+    const double size_m = map.page_size_m(page.level);
+    const auto index = [&](double low_m, int count) {
+        return std::isnan(low_m) ? 0 : int(std::clamp(std::floor(low_m / size_m), 0.0, double(count - 1)));
+    };
+    page.x = index(min_x_m, map.pages_x(page.level));
+    page.y = index(min_y_m, map.pages_y(page.level));
+    return page;
+}
+
+IndexTexel IndexMap::texel_at(double x_m, double y_m) {
+    const VirtualMap& map = impl_->map;
+    const glm::ivec2 last = impl_->document.index_size_texels() - 1;
+    const auto nearest = [&](double metres, int limit) {
+        return std::isnan(metres) ? 0 : int(std::clamp(std::floor(metres / map.spacing_m(0) + 0.5), 0.0, double(limit)));
+    };
+    const glm::ivec2 sample(nearest(x_m, last.x), nearest(y_m, last.y));
+    MapPage page{0, sample.x / kIndexPayload, sample.y / kIndexPayload};
+    page.x = std::min(page.x, map.pages_x(0) - 1); // the last sample may be the far edge of the last page
+    page.y = std::min(page.y, map.pages_y(0) - 1);
+    const glm::ivec2 texel = sample - glm::ivec2(page.x, page.y) * kIndexPayload + kIndexBorder;
+    const size_t at = size_t(texel.y) * kIndexTexels + size_t(texel.x);
+    if (const int slot = map.slot_of(page); slot >= 0 && map.dirty_of(slot).empty())
+        return impl_->pages[size_t(slot)].texels[at];
+    std::vector<IndexTexel> scratch(kPageTexels);
+    compose(impl_->document, map, page, {texel.x, texel.y, texel.x + 1, texel.y + 1}, scratch);
+    return scratch[at];
+}
+
+uint32_t IndexMap::count_stale_pages(const Document& document) const {
+    uint32_t stale = 0;
+    std::vector<IndexTexel> fresh(kPageTexels);
+    impl_->map.for_each_resident([&](const MapPage& page, int slot, const TexelRect& dirty) {
+        if (!dirty.empty()) return;
+        compose(document, impl_->map, page, {0, 0, kIndexTexels, kIndexTexels}, fresh);
+        stale += fresh == impl_->pages[size_t(slot)].texels ? 0 : 1;
+    });
+    return stale;
+}
+
+uint64_t IndexMap::gpu_bytes() const {
+    return impl_->indices ? impl_->indices.bytes() + impl_->tints.bytes() + impl_->page_table.size_bytes() : 0;
+}
+
+} // namespace loam
