@@ -14,25 +14,26 @@ int wrapped(int v, int period) {
 }
 
 // One of 16 directions at each lattice point: cheaper than a sine, and no axis is preferred.
-float gradient(int ix, int iy, float dx, float dy, uint32_t seed, int period) {
+float gradient(int ix, int iy, float dx, float dy, uint32_t seed, int period_x, int period_y) {
     static constexpr float kX[16] = {1, 0.9239f, 0.7071f, 0.3827f, 0, -0.3827f, -0.7071f, -0.9239f,
                                      -1, -0.9239f, -0.7071f, -0.3827f, 0, 0.3827f, 0.7071f, 0.9239f};
-    const uint32_t h = hash(static_cast<uint32_t>(wrapped(ix, period)) * 0x9e3779b1u ^
-                            hash(static_cast<uint32_t>(wrapped(iy, period)) + seed * 0x85ebca77u));
+    const uint32_t h = hash(static_cast<uint32_t>(wrapped(ix, period_x)) * 0x9e3779b1u ^
+                            hash(static_cast<uint32_t>(wrapped(iy, period_y)) + seed * 0x85ebca77u));
     return kX[h & 15] * dx + kX[(h + 12) & 15] * dy;
 }
 
 } // namespace
 
-float noise(float x, float y, uint32_t seed, int period) {
+float noise_xy(float x, float y, uint32_t seed, int period_x, int period_y) {
     const float fx = std::floor(x), fy = std::floor(y);
     const int ix = static_cast<int>(fx), iy = static_cast<int>(fy);
     const float dx = x - fx, dy = y - fy;
     const auto fade = [](float t) { return t * t * t * (t * (t * 6 - 15) + 10); };
     const float u = fade(dx), v = fade(dy);
-    const float south = mix(gradient(ix, iy, dx, dy, seed, period), gradient(ix + 1, iy, dx - 1, dy, seed, period), u);
-    const float north =
-        mix(gradient(ix, iy + 1, dx, dy - 1, seed, period), gradient(ix + 1, iy + 1, dx - 1, dy - 1, seed, period), u);
+    const auto corner = [&](int cx, int cy) {
+        return gradient(ix + cx, iy + cy, dx - static_cast<float>(cx), dy - static_cast<float>(cy), seed, period_x, period_y);
+    };
+    const float south = mix(corner(0, 0), corner(1, 0), u), north = mix(corner(0, 1), corner(1, 1), u);
     return mix(south, north, v) * 1.45f; // the extreme of the plain sum is about 0.7
 }
 
@@ -61,7 +62,7 @@ float ridged(float x, float y, uint32_t seed, int octaves, int period) {
     return std::clamp(sum / whole, 0.0f, 1.0f);
 }
 
-Cell cellular(float x, float y, uint32_t seed, int period) {
+Cell cellular_xy(float x, float y, uint32_t seed, int period_x, int period_y) {
     const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
     float px[25], py[25];
     uint32_t ids[25];
@@ -69,7 +70,7 @@ Cell cellular(float x, float y, uint32_t seed, int period) {
     float best_squared = 1e9f;
     for (int k = 0; k < 25; ++k) {
         const int cx = ix + k % 5 - 2, cy = iy + k / 5 - 2;
-        const uint32_t h = hash(static_cast<uint32_t>(wrapped(cx, period)), static_cast<uint32_t>(wrapped(cy, period)), seed);
+        const uint32_t h = hash(static_cast<uint32_t>(wrapped(cx, period_x)), static_cast<uint32_t>(wrapped(cy, period_y)), seed);
         ids[k] = h;
         px[k] = static_cast<float>(cx) + 0.5f + 0.84f * (unit_from_hash(h) - 0.5f) - x;
         py[k] = static_cast<float>(cy) + 0.5f + 0.84f * (unit_from_hash(hash(h)) - 0.5f) - y;

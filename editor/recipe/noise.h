@@ -33,7 +33,10 @@ class Chance {
 };
 
 // Gradient noise, about -1 … 1, one feature a unit. `period` > 0: repeats after that many units in x and y.
-[[nodiscard]] float noise(float x, float y, uint32_t seed, int period = 0);
+[[nodiscard]] float noise_xy(float x, float y, uint32_t seed, int period_x, int period_y);
+[[nodiscard]] inline float noise(float x, float y, uint32_t seed, int period = 0) {
+    return noise_xy(x, y, seed, period, period);
+}
 
 // Octaves of `noise`, each at twice the frequency and `gain` times the amplitude; normalised to about -1 … 1.
 [[nodiscard]] float fractal(float x, float y, uint32_t seed, int octaves, float gain = 0.5f, int period = 0);
@@ -48,7 +51,10 @@ struct Cell {
     float to_x = 0, to_y = 0; // from the nearest point to here
     uint32_t id = 0;
 };
-[[nodiscard]] Cell cellular(float x, float y, uint32_t seed, int period = 0);
+[[nodiscard]] Cell cellular_xy(float x, float y, uint32_t seed, int period_x, int period_y);
+[[nodiscard]] inline Cell cellular(float x, float y, uint32_t seed, int period = 0) {
+    return cellular_xy(x, y, seed, period, period);
+}
 
 [[nodiscard]] inline float smooth_step(float low, float high, float x) {
     const float t = x <= low ? 0.0f : x >= high ? 1.0f : (x - low) / (high - low);
