@@ -178,7 +178,7 @@ Edit text_field(Ui& ui, std::string_view name, std::string& value, const TextFie
         }
         if (line.accepted || line.cancelled) {
             state.editing = false;
-            result.finished = line.accepted;
+            result.finished = line.accepted && value != state.original;
             ui.set_focus(0, false);
         }
         ui.draw().rect(place, kTransparent, ui.px(t.radius), t.accent, ui.px(1));

@@ -82,6 +82,12 @@ void Ui::take_events() {
         const bool mouse_event = e.type == Event::Type::mouse_move || e.type == Event::Type::mouse_button ||
                                  e.type == Event::Type::mouse_leave || e.type == Event::Type::wheel;
         if (button || (key && mouse_event)) break;  // after a button nothing more; after a key no pointer
+        if (e.type == Event::Type::mouse_button && active_ != 0) {
+            // A drag is seen to its end before the button changes: no widget has to care about a last
+            // movement.
+            if (std::isfinite(e.position.x) && std::isfinite(e.position.y)) mouse_ = e.position;
+            if (mouse_moved()) break;
+        }
         queue_.pop_front();
         bool stop = false;
         switch (e.type) {
