@@ -3,10 +3,11 @@
 //
 //     auto pass = commands.pass("texture compose", {{scratch, Access::compute_storage}, {layers, Access::compute_sampled}});
 //     commands.bind(pipeline, {{0, scratch.mip_view(0)}, {1, layers.view(), sampler}});
-//     commands.push(params);
+//     commands.push(params);                       // to the pipeline bound last
 //     commands.dispatch(32, 32, 3);
 #pragma once
 
+#include <cstddef>
 #include <initializer_list>
 #include <span>
 #include <string_view>
@@ -14,6 +15,7 @@
 
 #include <vulkan/vulkan_core.h>
 
+#include "runtime/base/check.h"
 #include "runtime/gpu/pipeline.h"
 #include "runtime/gpu/resources.h"
 
@@ -27,7 +29,8 @@ struct Use {
     Access access;
 };
 
-// One descriptor: slot and what is there. Sampled images are read in SHADER_READ_ONLY (or DEPTH_READ_ONLY), storage in GENERAL.
+// One descriptor: slot and what is there. Sampled images are read in SHADER_READ_ONLY (or
+// DEPTH_STENCIL_READ_ONLY for Access::depth_sampled), storage in GENERAL. Images sampled in GENERAL say so.
 struct Bound {
     Bound(uint32_t s, VkImageView view) : slot(s), image{VK_NULL_HANDLE, view, VK_IMAGE_LAYOUT_GENERAL} {}
     Bound(uint32_t s, VkImageView view, const Sampler& sampler,
@@ -76,10 +79,16 @@ class Commands {
         uint32_t query_;
     };
     [[nodiscard]] Pass pass(const char* name, std::initializer_list<Use> uses);
+    [[nodiscard]] Pass pass(const char* name, std::span<const Use> uses);
 
-    // The barrier alone, for uses that are not a pass of their own.
+    // The barrier alone, for uses that are not a pass of their own. Not inside begin_rendering … end_rendering.
+    // A resource may be named twice only for two reads in one layout.
     void use(std::initializer_list<Use> uses);
+    void use(std::span<const Use> uses);
+    // For images that are not ours (the swapchain's): `before` undefined discards the contents.
+    void transition(VkImage image, Access before, Access after);
 
+    // Sets viewport and scissor to the whole extent.
     void begin_rendering(VkExtent2D extent, std::span<const ColorTarget> colors, const DepthTarget& depth = {});
     void end_rendering();
     void set_viewport(float x, float y, float width, float height); // viewport, and a scissor to match
@@ -93,14 +102,21 @@ class Commands {
         static_assert(sizeof(T) <= 128 && sizeof(T) % 4 == 0);
         push_bytes(pipeline, &data, sizeof(T));
     }
+    template <typename T>
+    void push(const T& data) {
+        LOAM_CHECK(bound_ != nullptr, "push without a bound pipeline");
+        push(*bound_, data);
+    }
 
     void dispatch(uint32_t groups_x, uint32_t groups_y = 1, uint32_t groups_z = 1);
     void draw(uint32_t vertex_count, uint32_t instance_count = 1, uint32_t first_vertex = 0, uint32_t first_instance = 0);
 
   private:
     friend class FrameRing;
+    void close_pass(uint32_t query);
     FrameRing* ring_ = nullptr;
     VkCommandBuffer buffer_ = VK_NULL_HANDLE;
+    const Pipeline* bound_ = nullptr; // since begin()
 };
 
 } // namespace loam::gpu

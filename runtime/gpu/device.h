@@ -3,9 +3,10 @@
 // Ownership: every GPU object is a move-only RAII type. Its destructor hands the raw handle to the device together
 // with the number of the frame that may still use it; the device destroys it when the GPU has passed that frame.
 // Needs beyond Vulkan 1.3 core: scalarBlockLayout, independentBlend, fragmentStoresAndAtomics,
-// shaderStorageImageExtendedFormats off; textureCompressionBC is optional (`caps().bc`).
+// shaderStorageImageExtendedFormats; textureCompressionBC is optional (`caps().bc`). One thread uses the device.
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -39,11 +40,11 @@ struct DeviceCaps {
     VkFormat depth_stencil = VK_FORMAT_UNDEFINED; // D32_SFLOAT_S8_UINT or D24_UNORM_S8_UINT
 };
 
-// A piece of a memory block; see memory.h.
+// A piece of a memory block; see memory.h. `mapped` is null for MemoryUse::device, even where the host could see it.
 struct Allocation {
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkDeviceSize offset = 0, size = 0;
-    void* mapped = nullptr; // non-null for host-visible memory
+    void* mapped = nullptr;
     uint32_t block = 0, pool = 0;
 };
 
@@ -66,6 +67,7 @@ class Device {
     [[nodiscard]] VkQueue queue() const { return queue_; }
     [[nodiscard]] uint32_t queue_family() const { return queue_family_; }
     [[nodiscard]] const DeviceCaps& caps() const { return caps_; }
+    [[nodiscard]] const VkPhysicalDeviceLimits& limits() const { return limits_; }
     [[nodiscard]] VkPipelineCache pipeline_cache() const { return pipeline_cache_; }
     [[nodiscard]] ShaderLibrary& shaders() { return *shaders_; }
     [[nodiscard]] PipelineSet& pipelines() { return *pipelines_; }
@@ -86,6 +88,8 @@ class Device {
     void wait_idle(); // shutdown and tests only
 
     void set_name(VkObjectType type, uint64_t handle, std::string_view name);
+    void begin_label(VkCommandBuffer commands, const char* name);
+    void end_label(VkCommandBuffer commands);
     // Validation messages (errors and warnings) since start: tests demand 0.
     [[nodiscard]] uint32_t validation_message_count() const;
 
@@ -95,7 +99,11 @@ class Device {
 
   private:
     Device();
-    struct Retired;
+    Status set_up(const DeviceDesc& desc);
+    struct Retired {
+        uint64_t frame = 0; // the last that may use it
+        std::function<void()> destroy;
+    };
     VkInstance instance_ = VK_NULL_HANDLE;
     VkDebugUtilsMessengerEXT messenger_ = VK_NULL_HANDLE;
     VkPhysicalDevice physical_ = VK_NULL_HANDLE;
@@ -105,6 +113,11 @@ class Device {
     VkPipelineCache pipeline_cache_ = VK_NULL_HANDLE;
     VkSemaphore timeline_ = VK_NULL_HANDLE;
     DeviceCaps caps_;
+    VkPhysicalDeviceLimits limits_{};
+    std::atomic<uint32_t> validation_messages_{0};
+    PFN_vkSetDebugUtilsObjectNameEXT set_object_name_ = nullptr; // null without VK_EXT_debug_utils
+    PFN_vkCmdBeginDebugUtilsLabelEXT cmd_begin_label_ = nullptr;
+    PFN_vkCmdEndDebugUtilsLabelEXT cmd_end_label_ = nullptr;
     uint64_t current_frame_ = 0;
     bool lost_ = false;
     std::unique_ptr<MemoryPools> memory_;
@@ -112,6 +125,9 @@ class Device {
     std::unique_ptr<PipelineSet> pipelines_;
     std::vector<Retired> retired_;
 };
+
+// Of all devices of this process, those already destroyed included: what leaks shows at destruction.
+[[nodiscard]] uint32_t total_validation_messages();
 
 // One sentence for a Vulkan failure: "vkCreateImage failed: out of device memory".
 [[nodiscard]] Error vk_error(std::string_view what, VkResult result);

@@ -6,7 +6,8 @@
 //     ... record into frame->commands ...
 //     ring.end(*frame, {});                   // submits
 //
-// A readback requested in frame N is delivered in `take_readbacks` of the first `begin` after the GPU passed frame N.
+// A readback requested in frame N is delivered by the first `begin` after the GPU passed frame N, in order of frames.
+// Each frame begun must be ended, even when nothing could be recorded. One ring records at a time.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +51,8 @@ class FrameRing {
     Status end(Frame& frame, const SubmitSync& sync = {});
     Status finish(Frame& frame); // end, then wait for this frame: headless renders and tests
 
-    // Host memory for this frame, aligned to 256 bytes. Grows by blocks as needed.
+    // Host memory for this frame, aligned to 256 bytes; may be copied from, or read as storage, uniform, index or
+    // indirect buffer without a Use. Grows by blocks as needed.
     UploadSlice upload(uint64_t size_bytes);
     // Copies from a buffer into host memory once the commands so far have run; `done` is called from a later `begin`
     // (or from `finish`) with the bytes.
@@ -68,10 +70,16 @@ class FrameRing {
     friend class Commands;
     struct Slot;
     explicit FrameRing(Device& device);
+    Status make_slot(Slot& slot);
     void deliver(Slot& slot);
+    void deliver_finished();
+    VkDescriptorSet allocate_set(VkDescriptorSetLayout layout);
+    uint32_t open_timer(const char* name);
+    void close_timer(uint32_t query);
     Device& device_;
     std::vector<std::unique_ptr<Slot>> slots_;
-    Slot* current_ = nullptr;
+    Slot* current_ = nullptr; // between begin and end
+    size_t next_slot_ = 0;
     std::vector<PassTime> pass_times_;
 };
 

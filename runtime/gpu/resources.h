@@ -1,11 +1,13 @@
 // Images, buffers, samplers. Move-only; destruction retires the raw handle to the device.
-// An image or buffer remembers how it was used last; Commands::use() makes the barrier from that.
+// An image or buffer remembers how it was used; Commands::use() makes the barrier from that. Set `last_access` to
+// undefined to say that the contents are not needed any more.
 #pragma once
 
 #include <cstring>
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <vulkan/vulkan_core.h>
 
@@ -21,7 +23,7 @@ struct ImageDesc {
     uint32_t mip_count = 1;
     uint32_t layer_count = 1;  // > 1: its default view is a 2D array
     bool array_view = false;   // make the default view a 2D array even with one layer
-    VkImageUsageFlags usage = 0;
+    VkImageUsageFlags usage = 0; // transfer usages are always added
     // A second view of the same bytes in another format (for instance RG32_UINT over BC1); UNDEFINED: none.
     VkFormat alias_format = VK_FORMAT_UNDEFINED;
 };
@@ -38,9 +40,16 @@ class Image {
     [[nodiscard]] VkImage handle() const { return image_; }
     [[nodiscard]] VkImageView view() const { return view_; }                      // all mips and layers
     [[nodiscard]] VkImageView mip_view(uint32_t mip) const { return mip_views_[mip]; } // one mip, all layers; storage, targets
+    // One mip of one layer, to render into it (shadow cascades): images with layers and an attachment usage.
+    [[nodiscard]] VkImageView layer_view(uint32_t mip, uint32_t layer) const {
+        return layer_views_[size_t(mip) * layer_count_ + layer];
+    }
     [[nodiscard]] VkImageView depth_view() const { return depth_view_; }   // depth aspect only, for sampling
     [[nodiscard]] VkImageView stencil_view() const { return stencil_view_; }
-    [[nodiscard]] VkImageView alias_view(uint32_t mip) const { return alias_views_[mip]; }
+    // All layers, but of a compressed image one layer only: Vulkan allows no array of texel views of blocks.
+    [[nodiscard]] VkImageView alias_view(uint32_t mip, uint32_t layer = 0) const {
+        return alias_views_[size_t(mip) * alias_layers_ + layer];
+    }
     [[nodiscard]] VkFormat format() const { return format_; }
     [[nodiscard]] uint32_t width() const { return width_; }
     [[nodiscard]] uint32_t height() const { return height_; }
@@ -50,15 +59,18 @@ class Image {
     [[nodiscard]] uint64_t bytes() const { return allocation_.size; }
 
     Access last_access = Access::undefined; // kept by Commands
+    SyncState sync;                         // kept by Commands
 
   private:
+    Status make_views(const ImageDesc& desc, VkImageUsageFlags usage);
+    void swap(Image& other) noexcept;
     void retire();
     Device* device_ = nullptr;
     VkImage image_ = VK_NULL_HANDLE;
     VkImageView view_ = VK_NULL_HANDLE, depth_view_ = VK_NULL_HANDLE, stencil_view_ = VK_NULL_HANDLE;
-    std::vector<VkImageView> mip_views_, alias_views_;
+    std::vector<VkImageView> mip_views_, layer_views_, alias_views_;
     VkFormat format_ = VK_FORMAT_UNDEFINED;
-    uint32_t width_ = 0, height_ = 0, mip_count_ = 1, layer_count_ = 1;
+    uint32_t width_ = 0, height_ = 0, mip_count_ = 1, layer_count_ = 1, alias_layers_ = 1;
     Allocation allocation_;
 };
 
@@ -84,9 +96,11 @@ class Buffer {
     template <typename T>
     [[nodiscard]] T* as() const { return static_cast<T*>(allocation_.mapped); }
 
-    Access last_access = Access::undefined;
+    Access last_access = Access::undefined; // kept by Commands
+    SyncState sync;                         // kept by Commands
 
   private:
+    void swap(Buffer& other) noexcept;
     void retire();
     Device* device_ = nullptr;
     VkBuffer buffer_ = VK_NULL_HANDLE;
@@ -99,7 +113,7 @@ struct SamplerDesc {
     VkSamplerMipmapMode mip_mode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
     VkSamplerAddressMode address = VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
     float max_anisotropy = 1.0f;                          // > 1 enables it, limited to the device's
-    bool compare_greater = false;                         // reversed-Z shadow compare
+    bool compare_greater = false;                         // reversed-Z shadow compare: 1 where reference >= texel
     float max_lod = VK_LOD_CLAMP_NONE;
     bool operator==(const SamplerDesc&) const = default;
 };

@@ -1,5 +1,6 @@
 // SPIR-V by name. The build compiles every shader and embeds it; in the editor the sources can be watched and compiled again with
-// glslang, includes resolved below the shader folder.
+// glslang. Includes are resolved from the folder above shaders/, as the build does ("shaders/texture/page_io.h"), or
+// beside the including file.
 #pragma once
 
 #include <filesystem>
@@ -7,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "runtime/base/result.h"
@@ -26,14 +28,18 @@ class ShaderLibrary {
 
     // Watching: call `poll` now and then (the editor: twice a second). Returns names whose code changed, and keeps the
     // last error, one message a shader, until that shader compiles.
-    void watch(const std::filesystem::path& shader_root);
+    void watch(const std::filesystem::path& shader_root); // the `shaders` folder
     std::vector<std::string> poll();
     [[nodiscard]] const std::map<std::string, std::string>& errors() const { return errors_; }
+    // A failure found elsewhere, such as a driver that rejects the code.
+    void report(const std::string& name, std::string message) { errors_[name] = std::move(message); }
 
   private:
     struct Watched {
-        std::filesystem::file_time_type newest{}; // of the file and what it includes
+        std::vector<std::filesystem::path> files;           // the file and what it includes
+        std::vector<std::filesystem::file_time_type> times; // of each: two may be saved within one tick of the clock
     };
+    bool recompile(const std::string& name); // true: the code is another
     std::filesystem::path root_;
     std::map<std::string, Watched, std::less<>> watched_;
     std::map<std::string, std::vector<uint32_t>, std::less<>> reloaded_;

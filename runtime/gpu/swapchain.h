@@ -22,7 +22,8 @@ class Swapchain {
         VkExtent2D extent{};
         VkSemaphore acquired = VK_NULL_HANDLE, rendered = VK_NULL_HANDLE;
     };
-    // Recreates itself when the window has changed size; an error only when the surface is gone.
+    // Recreates itself when the window has changed size. An error when the surface is gone, or, starting with
+    // "window has no area", while there is nothing to draw on. Call it before FrameRing::begin, or end that frame.
     Result<Target> acquire(uint32_t width, uint32_t height);
     // The image must be in PRESENT_SRC layout by then. SUBOPTIMAL marks it for recreation.
     Status present(const Target& target);
@@ -30,13 +31,16 @@ class Swapchain {
 
   private:
     explicit Swapchain(Device& device);
+    Status choose_format();
     Status recreate(uint32_t width, uint32_t height);
+    Status make_images();
     void destroy_images();
     Device& device_;
     VkSurfaceKHR surface_ = VK_NULL_HANDLE;
     VkSwapchainKHR swapchain_ = VK_NULL_HANDLE;
     VkFormat format_ = VK_FORMAT_UNDEFINED;
     VkExtent2D extent_{};
+    uint32_t width_ = 0, height_ = 0; // as asked for; the surface may decide otherwise
     std::vector<VkImage> images_;
     std::vector<VkImageView> views_;
     std::vector<VkSemaphore> acquired_, rendered_;
