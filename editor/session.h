@@ -14,6 +14,8 @@
 #include "runtime/frame/renderer.h"
 #include "runtime/gpu/device.h"
 #include "runtime/gpu/frame_ring.h"
+#include "runtime/maps/height_map.h"
+#include "runtime/maps/index_map.h"
 
 namespace loam {
 
@@ -55,26 +57,46 @@ class Session {
 
     // Renders frames until settled (or max_frames) and returns the picture.
     Result<Picture> render(const RenderRequest& request);
-    // One frame, without waiting for it to settle: `frames` of them.
+    // `frames` frames, without waiting for the picture to settle.
     Status step(const Camera& camera, int width, int height, const FrameSettings& settings, int frames);
     [[nodiscard]] int frames_rendered() const { return frames_rendered_; }
+    [[nodiscard]] bool last_render_settled() const { return last_render_settled_; } // else max_frames ended it
+
+    // The composed ground under a point: the renderer's pages when there is one, else composed without a device.
+    Result<double> height_m(double x_m, double y_m);
+    Result<glm::dvec3> normal(double x_m, double y_m);
+    Result<IndexTexel> layer_at(double x_m, double y_m);
+    Result<std::optional<glm::dvec3>> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m = 50'000);
     // A view of the whole map from the south-west, above the ground.
     [[nodiscard]] Camera default_camera();
 
   private:
-    Session() = default;
+    Session();
+    Status make_device();
+    Status make_query_maps(); // for the queries of a session that has no renderer
+    // Frames of `renderer` from one camera until another would not improve the picture; then the picture.
+    Result<Picture> settle(Renderer& renderer, const RenderRequest& request, const FrameSettings& frame);
+    Result<Picture> supersampled(Renderer& renderer, const RenderRequest& request, const FrameSettings& frame);
+    Status one_frame(Renderer& renderer, const Camera& camera, glm::uvec2 extent, const FrameSettings& frame,
+                     Picture* picture);
+
+    struct Recorder;
     SessionDesc desc_;
     std::unique_ptr<Document> document_;
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<gpu::FrameRing> ring_;
     std::unique_ptr<Renderer> renderer_;
-    int frames_rendered_ = 0;
-    struct Recorder;
+    std::unique_ptr<HeightMap> query_heights_;
+    std::unique_ptr<IndexMap> query_indices_;
     std::unique_ptr<Recorder> recorder_;
+    int frames_rendered_ = 0;
+    bool last_render_settled_ = false;
 };
 
 // "x,y,z,yaw_deg,pitch_deg[,fov_deg]" as on the command line.
 [[nodiscard]] Result<Camera> parse_camera(std::string_view text);
+// "eye x,y,z,target x,y,z[,fov_deg]"
+[[nodiscard]] Result<Camera> parse_look_at(std::string_view text);
 Status save_png(const std::filesystem::path& file, const Picture& picture);
 
 } // namespace loam

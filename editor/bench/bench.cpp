@@ -1,0 +1,123 @@
+#include "editor/bench/bench.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <utility>
+
+namespace loam::bench {
+
+namespace fs = std::filesystem;
+
+const std::vector<BenchName>& benches() {
+    static const std::vector<BenchName> table = {
+        {"accuracy", "PSNR and fine detail against the reference, and milliseconds, for several settings", bench_accuracy},
+        {"crater", "one crater on a 1 km and on a 16 km map: pages, milliseconds, memory", bench_crater},
+        {"edit", "pages and milliseconds of a dab, a footprint and a crater", bench_edit},
+        {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
+        {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},
+        {"start", "from the command to the first picture, with warm and with empty shader caches", bench_start},
+    };
+    return table;
+}
+
+std::string to_text(const BenchReport& report) {
+    std::string text;
+    for (const BenchTable& table : report) {
+        text += (text.empty() ? "" : "\n") + table.title + "\n";
+        if (table.rows.empty()) continue;
+        std::vector<std::vector<std::string>> cells(1);
+        for (const auto& [key, value] : table.rows[0].items()) cells[0].push_back(key);
+        for (const Json& row : table.rows) {
+            cells.emplace_back();
+            for (const std::string& key : cells[0]) {
+                const Json value = row.value(key, Json());
+                cells.back().push_back(value.is_string() ? value.get<std::string>() : value.is_null() ? "-" : value.dump());
+            }
+        }
+        for (const auto& row : cells) {
+            text += "|";
+            for (size_t c = 0; c < row.size(); ++c) {
+                size_t width = 0;
+                for (const auto& other : cells) width = std::max(width, other[c].size());
+                text += fmt::format(" {:<{}} |", row[c], width);
+            }
+            text += "\n";
+            if (&row == &cells.front()) { // Markdown's rule, so that the tables can be pasted
+                text += "|";
+                for (size_t c = 0; c < row.size(); ++c) text += " --- |";
+                text += "\n";
+            }
+        }
+    }
+    return text;
+}
+
+Json to_json(const BenchReport& report) {
+    Json json = Json::array();
+    for (const BenchTable& table : report) json.push_back({{"title", table.title}, {"rows", table.rows}});
+    return json;
+}
+
+double now_ms() {
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+double rounded(double value, int decimals) {
+    const double scale = std::pow(10.0, decimals);
+    return std::isfinite(value) ? std::round(value * scale) / scale : value;
+}
+
+Spread spread_of(std::vector<double> values) {
+    if (values.empty()) return {};
+    std::sort(values.begin(), values.end());
+    return {values[values.size() / 2], values[std::min(values.size() - 1, values.size() * 95 / 100)], values.back()};
+}
+
+// --- temporary projects ---
+
+Result<TemporaryProject> TemporaryProject::make_folder() {
+    std::string pattern = (fs::temp_directory_path() / "loam-bench-XXXXXX").string();
+    if (!::mkdtemp(pattern.data())) return error("cannot create a temporary folder in {}", fs::temp_directory_path().string());
+    TemporaryProject project;
+    project.path_ = pattern;
+    return project;
+}
+
+Result<TemporaryProject> TemporaryProject::create_flat(const fs::path& like, double side_m) {
+    auto settings = load_project(like);
+    if (!settings) return settings.error();
+    auto project = make_folder();
+    if (!project) return project;
+    std::error_code code;
+    if (fs::exists(like / "layers")) fs::copy(like / "layers", project->path_ / "layers", fs::copy_options::recursive, code);
+    if (code) return error("cannot copy the layers of {}: {}", like.string(), code.message());
+    settings->height_spacing_m = 1;
+    settings->height_samples_x = settings->height_samples_y = static_cast<int>(side_m) + 1;
+    settings->refine = default_refine(1);
+    settings->index_spacing_m = 1;
+    settings->default_height_mm = 100'000;
+    auto document = Document::create(project->path_, *settings);
+    if (!document) return document.error();
+    return project;
+}
+
+Result<TemporaryProject> TemporaryProject::create_copy(const fs::path& of) {
+    auto project = make_folder();
+    if (!project) return project;
+    std::error_code code;
+    fs::copy(of, project->path_, fs::copy_options::recursive | fs::copy_options::overwrite_existing, code);
+    if (code) return error("cannot copy {}: {}", of.string(), code.message());
+    return project;
+}
+
+TemporaryProject::TemporaryProject(TemporaryProject&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+
+TemporaryProject::~TemporaryProject() {
+    std::error_code code;
+    if (!path_.empty()) fs::remove_all(path_, code);
+}
+
+} // namespace loam::bench

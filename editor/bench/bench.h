@@ -1,0 +1,77 @@
+// Benches: figures that docs/measurements.md quotes, each printed by one command.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "editor/report.h"
+#include "editor/session.h"
+
+namespace loam::bench {
+
+struct BenchRequest {
+    std::filesystem::path project;
+    SessionDesc session;
+    int width = 960, height = 540;
+    int frames = 300;              // frame
+    double goal_ms = 33;           // frame
+    std::optional<Camera> camera;  // accuracy; none: three views of the map
+    std::filesystem::path dem;     // ground
+    bool quick = false;            // fewer settings and frames: for tests
+};
+
+// Rows of one table have the same keys.
+struct BenchTable {
+    std::string title;
+    std::vector<Json> rows;
+};
+using BenchReport = std::vector<BenchTable>;
+
+struct BenchName {
+    const char* name;
+    const char* summary;
+    Result<BenchReport> (*run)(const BenchRequest& request);
+};
+[[nodiscard]] const std::vector<BenchName>& benches();
+
+Result<BenchReport> bench_accuracy(const BenchRequest& request);
+Result<BenchReport> bench_crater(const BenchRequest& request);
+Result<BenchReport> bench_edit(const BenchRequest& request);
+Result<BenchReport> bench_frame(const BenchRequest& request);
+Result<BenchReport> bench_ground(const BenchRequest& request);
+Result<BenchReport> bench_start(const BenchRequest& request);
+
+[[nodiscard]] std::string to_text(const BenchReport& report);
+[[nodiscard]] Json to_json(const BenchReport& report);
+
+// --- shared steps ---
+[[nodiscard]] double now_ms(); // steady
+[[nodiscard]] double rounded(double value, int decimals);
+struct Spread {
+    double median = 0, p95 = 0, max = 0;
+};
+[[nodiscard]] Spread spread_of(std::vector<double> values);
+
+// A project in a temporary folder, removed with the object.
+class TemporaryProject {
+  public:
+    // A flat map of `side_m` with the layers of `like`, heights every metre; nothing is written, so every page is all default.
+    static Result<TemporaryProject> create_flat(const std::filesystem::path& like, double side_m);
+    static Result<TemporaryProject> create_copy(const std::filesystem::path& of);
+    TemporaryProject(TemporaryProject&& other) noexcept;
+    ~TemporaryProject();
+    [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  private:
+    TemporaryProject() = default;
+    static Result<TemporaryProject> make_folder();
+    std::filesystem::path path_;
+};
+
+// What one command costs: pages of every map, and milliseconds to the first changed and to the finished picture.
+Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height, const Command& command);
+// The same for composing every resident page again.
+Result<Json> measure_compose_all(Session& session, const Camera& camera, int width, int height);
+
+} // namespace loam::bench

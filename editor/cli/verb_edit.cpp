@@ -1,0 +1,48 @@
+#include "editor/cli/verb.h"
+#ifdef LOAM_HAS_WINDOW
+#include "editor/window/window.h"
+#endif
+
+namespace loam::cli {
+
+namespace {
+
+Status run(const Args& args) {
+#ifdef LOAM_HAS_WINDOW
+    WindowOptions options;
+    options.project = args.positional(0);
+    options.device.device_filter = args.text("--device");
+    options.device.validation = options.validation = args.has("--validation");
+    const PixelSize size = args.size("--size", {1280, 800});
+    options.width = size.width;
+    options.height = size.height;
+    options.record = args.text("--record");
+    if (args.has("--shaders")) options.shader_dir = args.text("--shaders");
+    options.ui_scale = args.number("--ui-scale", 0);
+    options.max_frames = args.integer("--max-frames", 0);
+    // The project is opened once here: a bad one is refused before a window flashes up.
+    if (auto document = Document::open(options.project, OpenMode::read_only); !document) return document.error();
+    if (run_window(options) != 0) return error("the window ended with a failure, see above");
+    return {};
+#else
+    return error("this build of loam has no window; {} can be rendered with loam render", args.positional(0));
+#endif
+}
+
+} // namespace
+
+Verb edit_verb() {
+    return {.name = "edit",
+            .summary = "opens the window",
+            .positionals = {{"PROJECT", "project folder"}},
+            .options = {{"--size", ValueKind::size, "WxH", "of the window; default 1280x800"},
+                        {"--record", ValueKind::text, "FILE", "append every command to this script"},
+                        {"--shaders", ValueKind::text, "DIR", "read shaders from here and reload them when a file changes"},
+                        {"--ui-scale", ValueKind::number, "S", "size of the interface; default as the screen says"},
+                        {"--max-frames", ValueKind::integer, "N", "close after so many frames"},
+                        {"--device", ValueKind::text, "NAME", "part of the Vulkan device's name, or its number"},
+                        {"--validation", ValueKind::none, "", "Vulkan validation"}},
+            .run = run};
+}
+
+} // namespace loam::cli

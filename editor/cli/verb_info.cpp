@@ -1,0 +1,98 @@
+#include <vulkan/vulkan.h>
+
+#include "editor/cli/verb.h"
+#include "editor/report.h"
+
+namespace loam::cli {
+
+namespace {
+
+// Names of all Vulkan devices, in the order that --device numbers them; empty when there is no Vulkan.
+std::vector<std::string> device_names() {
+    VkApplicationInfo application{};
+    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
+    application.apiVersion = VK_API_VERSION_1_3;
+    VkInstanceCreateInfo info{};
+    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
+    info.pApplicationInfo = &application;
+    VkInstance instance = VK_NULL_HANDLE;
+    if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS) return {};
+    uint32_t count = 0;
+    std::vector<std::string> names;
+    if (vkEnumeratePhysicalDevices(instance, &count, nullptr) == VK_SUCCESS) {
+        std::vector<VkPhysicalDevice> devices(count);
+        vkEnumeratePhysicalDevices(instance, &count, devices.data());
+        for (VkPhysicalDevice device : devices) {
+            VkPhysicalDeviceProperties properties{};
+            vkGetPhysicalDeviceProperties(device, &properties);
+            names.emplace_back(properties.deviceName);
+        }
+    }
+    vkDestroyInstance(instance, nullptr);
+    return names;
+}
+
+void print_tree(const Json& json, int indent) {
+    for (const auto& [key, value] : json.items()) {
+        const std::string label = fmt::format("{:{}}{}", "", indent, key);
+        if (value.is_object()) {
+            fmt::print("{}\n", label);
+            print_tree(value, indent + 2);
+        } else if (value.is_array() && !value.empty() && value.front().is_object()) {
+            fmt::print("{}\n", label);
+            for (const Json& row : value) {
+                std::string line;
+                for (const auto& [name, cell] : row.items())
+                    line += fmt::format("{}{}", line.empty() ? "" : "  ", cell.is_string() ? cell.get<std::string>() : cell.dump());
+                fmt::print("{:{}}{}\n", "", indent + 2, line);
+            }
+        } else {
+            fmt::print("{:<26} {}\n", label, value.is_string() ? value.get<std::string>() : value.dump());
+        }
+    }
+}
+
+Result<Json> report_of(const Args& args) {
+    auto desc = session_desc(args);
+    if (!desc) return desc.error();
+    desc->mode = OpenMode::read_only;
+    auto session = Session::open(args.positional(0), *desc);
+    if (!session) return session.error();
+    Json json;
+    json["settings"] = to_report((*session)->document().settings());
+    json["statistics"] = to_report((*session)->document().statistics());
+    json["devices"] = device_names();
+    if (!args.has("--gpu")) return json;
+    const PixelSize size = args.size("--size", {960, 540});
+    LOAM_TRY((*session)->step((*session)->default_camera(), size.width, size.height, {}, 8));
+    auto renderer = (*session)->renderer();
+    if (!renderer) return renderer.error();
+    json["device"] = (*session)->device()->caps().name;
+    json["frame"] = to_report((*renderer)->statistics());
+    json["allocated_bytes"] = memory_report(**session);
+    return json;
+}
+
+Status run(const Args& args) {
+    auto json = report_of(args);
+    if (!json) return json.error();
+    if (args.has("--json"))
+        fmt::print("{}\n", json->dump(2));
+    else
+        print_tree(*json, 0);
+    return {};
+}
+
+} // namespace
+
+Verb info_verb() {
+    return {.name = "info",
+            .summary = "prints settings, sizes and devices of a project",
+            .positionals = {{"PROJECT", "project folder"}},
+            .options = with_device_options({{"--gpu", ValueKind::none, "", "render a few frames and print the memory table and the passes"},
+                                            {"--size", ValueKind::size, "WxH", "of those frames; default 960x540"},
+                                            {"--json", ValueKind::none, "", "print as JSON"}}),
+            .run = run};
+}
+
+} // namespace loam::cli

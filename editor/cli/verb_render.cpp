@@ -1,0 +1,94 @@
+#include <chrono>
+
+#include <nlohmann/json.hpp>
+
+#include "editor/choices.h"
+#include "editor/cli/verb.h"
+
+namespace loam::cli {
+
+namespace {
+
+Result<RenderRequest> request_of(const Args& args, Session& session) {
+    RenderRequest request;
+    if (args.has("--camera") && args.has("--look-at")) return error("--camera and --look-at exclude each other");
+    if (args.has("--camera"))
+        request.camera = parse_camera(args.text("--camera")).value();
+    else if (args.has("--look-at"))
+        request.camera = parse_look_at(args.text("--look-at")).value();
+    else
+        request.camera = session.default_camera();
+    const PixelSize size = args.size("--size", {1280, 720});
+    request.width = size.width;
+    request.height = size.height;
+    request.reference = args.has("--reference");
+    request.supersample = args.integer("--supersample", 1);
+    if (request.supersample < 1 || request.supersample > 16)
+        return error("--supersample {} is outside 1 … 16", request.supersample);
+    request.max_frames = args.integer("--max-frames", 600);
+    if (request.max_frames < 1) return error("--max-frames {} is below 1", request.max_frames);
+    request.frame.render_scale = static_cast<float>(args.number("--render-scale", 1));
+    if (request.frame.render_scale < 0.05f || request.frame.render_scale > 1)
+        return error("--render-scale {} is outside 0.05 … 1", request.frame.render_scale);
+    if (args.has("--debug")) {
+        auto debug = parse_debug_view(args.text("--debug"));
+        if (!debug) return debug.error();
+        request.frame.debug = *debug;
+    }
+    return request;
+}
+
+Status run(const Args& args) {
+    auto desc = session_desc(args);
+    if (!desc) return desc.error();
+    desc->mode = OpenMode::read_only;
+    auto session = Session::open(args.positional(0), *desc);
+    if (!session) return session.error();
+    auto request = request_of(args, **session);
+    if (!request) return request.error();
+    const std::string file = args.text("-o", "out.png");
+    const auto start = std::chrono::steady_clock::now();
+    auto picture = (*session)->render(*request);
+    if (!picture) return picture.error();
+    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    LOAM_TRY(save_png(file, *picture));
+    const bool settled = (*session)->last_render_settled();
+    const uint32_t messages = (*session)->device()->validation_message_count();
+    if (args.has("--json"))
+        fmt::print("{}\n", nlohmann::ordered_json{{"file", file},
+                                                  {"size", {picture->width, picture->height}},
+                                                  {"device", (*session)->device()->caps().name},
+                                                  {"frames", (*session)->frames_rendered()},
+                                                  {"settled", settled},
+                                                  {"ms", ms},
+                                                  {"validation_messages", messages}}
+                               .dump());
+    else
+        fmt::print("{}: {}x{}, {} frames in {:.0f} ms{}\n", file, picture->width, picture->height,
+                   (*session)->frames_rendered(), ms, settled ? "" : ", not yet settled");
+    if (messages > 0) return error("{} validation messages, see above", messages);
+    return {};
+}
+
+} // namespace
+
+Verb render_verb() {
+    return {.name = "render",
+            .summary = "renders a picture without a window",
+            .positionals = {{"PROJECT", "project folder"}},
+            .options = with_device_options(
+                {{"-o", ValueKind::text, "FILE", "picture to write, PNG; default out.png"},
+                 {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]", "metres and degrees; yaw is clockwise from north"},
+                 {"--look-at", ValueKind::look_at, "EX,EY,EZ,TX,TY,TZ[,FOV]", "from an eye to a target"},
+                 {"--size", ValueKind::size, "WxH", "pixels; default 1280x720"},
+                 {"--reference", ValueKind::none, "", "every pixel evaluated directly: no cache, no compression, at least 4x4 samples"},
+                 {"--supersample", ValueKind::integer, "N", "average of N x N pictures"},
+                 {"--render-scale", ValueKind::number, "S", "share of the width and height that is rendered; default 1"},
+                 {"--max-frames", ValueKind::integer, "N", "stop refining after so many; default 600"},
+                 {"--debug", ValueKind::text, "VIEW", "mips, sectors, normals, occlusion, indirection, shadow or albedo"},
+                 {"--json", ValueKind::none, "", "print figures as JSON"}}),
+            .run = run,
+            .notes = "Without a camera the whole map is shown from the south-west."};
+}
+
+} // namespace loam::cli

@@ -1,0 +1,181 @@
+#include "editor/image_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <fstream>
+#include <memory>
+
+#include <OpenImageIO/imageio.h>
+
+namespace loam {
+
+namespace {
+
+// OpenImageIO's messages span lines and end with stops; ours are one sentence.
+std::string one_line(std::string text) {
+    for (char& c : text)
+        if (c == '\n' || c == '\r') c = ' ';
+    while (!text.empty() && (text.back() == ' ' || text.back() == '.')) text.pop_back();
+    return text.empty() ? "no reason given" : text;
+}
+
+bool looks_like_text(std::span<const unsigned char> head) {
+    return std::all_of(head.begin(), head.end(), [](unsigned char c) {
+        return c >= 32 || c == '\n' || c == '\r' || c == '\t' || c == '\f';
+    });
+}
+
+Status check_readable(const std::filesystem::path& file) {
+    std::error_code code;
+    if (!std::filesystem::exists(file, code)) return error("{} does not exist", file.string());
+    if (std::filesystem::is_directory(file, code)) return error("{} is a folder, expected a picture", file.string());
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return error("{} cannot be read: no permission", file.string());
+    std::array<unsigned char, 512> head{};
+    stream.read(reinterpret_cast<char*>(head.data()), head.size());
+    const auto length = static_cast<size_t>(stream.gcount());
+    if (length == 0) return error("{} is empty", file.string());
+    if (looks_like_text({head.data(), length}))
+        return error("{} is a text file, expected a PNG, TIFF or EXR picture", file.string());
+    return {};
+}
+
+// Reads all channels in the file's own type and keeps the first as floats.
+template <typename T>
+bool read_channels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, SampleImage& out) {
+    const auto channels = static_cast<size_t>(spec.nchannels);
+    const auto width = static_cast<size_t>(spec.width);
+    constexpr int kRows = 64;
+    const size_t color_channels = channels < 3 ? 1 : 3; // 2: grey and alpha, 4: RGBA
+    std::vector<T> rows(width * channels * kRows);
+    for (int y = 0; y < spec.height; y += kRows) {
+        const int end = std::min(spec.height, y + kRows);
+        if (!input.read_scanlines(0, 0, spec.y + y, spec.y + end, spec.z, 0, spec.nchannels, type, rows.data()))
+            return false;
+        const size_t count = width * static_cast<size_t>(end - y);
+        float* target = out.samples.data() + static_cast<size_t>(y) * width;
+        for (size_t i = 0; i < count; ++i) {
+            const T* pixel = rows.data() + i * channels;
+            target[i] = static_cast<float>(pixel[0]);
+            for (size_t c = 1; c < color_channels; ++c) out.channels_differ = out.channels_differ || pixel[c] != pixel[0];
+        }
+    }
+    return true;
+}
+
+template <typename T>
+bool read_tiled(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, SampleImage& out) {
+    const auto channels = static_cast<size_t>(spec.nchannels);
+    const size_t color_channels = channels < 3 ? 1 : 3;
+    std::vector<T> all(out.samples.size() * channels);
+    if (!input.read_image(0, 0, 0, spec.nchannels, type, all.data())) return false;
+    for (size_t i = 0; i < out.samples.size(); ++i) {
+        out.samples[i] = static_cast<float>(all[i * channels]);
+        for (size_t c = 1; c < color_channels; ++c)
+            out.channels_differ = out.channels_differ || all[i * channels + c] != all[i * channels];
+    }
+    return true;
+}
+
+template <typename T>
+bool read_as(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, SampleImage& out) {
+    return spec.tile_width > 0 ? read_tiled<T>(input, spec, type, out) : read_channels<T>(input, spec, type, out);
+}
+
+Result<SampleImage> read_with_oiio(const std::filesystem::path& file, int max_side) {
+    OIIO::ImageSpec hints;
+    hints.attribute("oiio:UnassociatedAlpha", 1); // leave the samples alone
+    auto input = OIIO::ImageInput::open(file.string(), &hints);
+    if (!input) return error("{} is not a picture that can be read: {}", file.string(), one_line(OIIO::geterror()));
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
+        return error("{} has {}x{}x{} pixels of {} channels, expected a flat picture", file.string(), spec.width,
+                     spec.height, spec.depth, spec.nchannels);
+    if (spec.width > max_side || spec.height > max_side)
+        return error("{} is too large: {}x{} samples, at most {} a side", file.string(), spec.width, spec.height, max_side);
+
+    SampleImage out;
+    out.width = spec.width;
+    out.height = spec.height;
+    out.channel_count = spec.nchannels;
+    out.format = input->format_name();
+    out.samples.resize(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height));
+    bool ok = false;
+    switch (spec.format.basetype) {
+        case OIIO::TypeDesc::UINT8:
+            out.kind = SampleKind::unsigned_8;
+            ok = read_as<uint8_t>(*input, spec, OIIO::TypeDesc::UINT8, out);
+            break;
+        case OIIO::TypeDesc::UINT16:
+            out.kind = SampleKind::unsigned_16;
+            ok = read_as<uint16_t>(*input, spec, OIIO::TypeDesc::UINT16, out);
+            break;
+        case OIIO::TypeDesc::INT16:
+            out.kind = SampleKind::signed_16;
+            ok = read_as<int16_t>(*input, spec, OIIO::TypeDesc::INT16, out);
+            break;
+        case OIIO::TypeDesc::HALF:
+        case OIIO::TypeDesc::FLOAT:
+        case OIIO::TypeDesc::DOUBLE:
+            out.kind = SampleKind::floating;
+            out.was_double = spec.format.basetype == OIIO::TypeDesc::DOUBLE;
+            ok = read_as<float>(*input, spec, OIIO::TypeDesc::FLOAT, out);
+            break;
+        default:
+            return error("{} has samples of type {}, expected 8 or 16-bit integers or floats", file.string(),
+                         spec.format.c_str());
+    }
+    const std::string reason = input->geterror();
+    if (!ok || !reason.empty())
+        return error("{} is damaged or cut short: {}", file.string(), one_line(reason));
+    return out;
+}
+
+Status write_with_oiio(const std::filesystem::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                       const void* data) {
+    auto output = OIIO::ImageOutput::create(file.string());
+    if (!output) return error("cannot write {}: {}", file.string(), one_line(OIIO::geterror()));
+    if (!output->open(file.string(), spec) || !output->write_image(type, data) || !output->close())
+        return error("cannot write {}: {}", file.string(), one_line(output->geterror()));
+    return {};
+}
+
+Status write_caught(const std::filesystem::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                    const void* data) {
+    try {
+        return write_with_oiio(file, spec, type, data);
+    } catch (const std::exception& exception) {
+        return error("cannot write {}: {}", file.string(), one_line(exception.what()));
+    }
+}
+
+} // namespace
+
+Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side) {
+    LOAM_TRY(check_readable(file));
+    try {
+        return read_with_oiio(file, max_side);
+    } catch (const std::exception& exception) {
+        return error("{} cannot be read: {}", file.string(), one_line(exception.what()));
+    }
+}
+
+Status write_samples_u16(const std::filesystem::path& file, int width, int height, std::span<const uint16_t> samples) {
+    return write_caught(file, OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::UINT16), OIIO::TypeDesc::UINT16,
+                        samples.data());
+}
+
+Status write_samples_float(const std::filesystem::path& file, int width, int height, std::span<const float> samples) {
+    return write_caught(file, OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::FLOAT), OIIO::TypeDesc::FLOAT,
+                        samples.data());
+}
+
+Status write_rgba8_png(const std::filesystem::path& file, int width, int height, std::span<const uint8_t> rgba) {
+    OIIO::ImageSpec spec(width, height, 4, OIIO::TypeDesc::UINT8);
+    spec.attribute("oiio:ColorSpace", "sRGB");
+    spec.attribute("oiio:UnassociatedAlpha", 1);
+    return write_caught(file, spec, OIIO::TypeDesc::UINT8, rgba.data());
+}
+
+} // namespace loam

@@ -1,0 +1,101 @@
+#include "editor/picture.h"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+
+#include "runtime/base/check.h"
+
+namespace loam {
+
+namespace {
+
+void check_same_size(const Picture& a, const Picture& b) {
+    LOAM_CHECK(a.width == b.width && a.height == b.height && a.rgba.size() == b.rgba.size(),
+               fmt::format("pictures of {}x{} and {}x{}", a.width, a.height, b.width, b.height));
+}
+
+double luma(const Picture& p, int x, int y) {
+    const uint8_t* c = p.rgba.data() + 4 * (static_cast<size_t>(y) * static_cast<size_t>(p.width) + static_cast<size_t>(x));
+    return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; // Rec. 709 weights on encoded values
+}
+
+} // namespace
+
+float linear_from_srgb8(uint8_t value) {
+    static const std::array<float, 256> table = [] {
+        std::array<float, 256> t{};
+        for (size_t i = 0; i < t.size(); ++i) {
+            const double s = static_cast<double>(i) / 255.0;
+            t[i] = static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
+        }
+        return t;
+    }();
+    return table[value];
+}
+
+uint8_t srgb8_from_linear(float value) {
+    const double l = std::min(1.0, std::max(0.0, static_cast<double>(value)));
+    const double s = l <= 0.0031308 ? l * 12.92 : 1.055 * std::pow(l, 1.0 / 2.4) - 0.055;
+    return static_cast<uint8_t>(std::lround(s * 255.0));
+}
+
+void LinearAverage::add(const Picture& picture) {
+    const size_t pixels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
+    if (count_ == 0) {
+        width_ = picture.width;
+        height_ = picture.height;
+        sum_.assign(pixels * 3, 0.0f);
+    }
+    LOAM_CHECK(width_ == picture.width && height_ == picture.height, "pictures of one size are averaged");
+    for (size_t i = 0; i < pixels; ++i)
+        for (size_t c = 0; c < 3; ++c) sum_[i * 3 + c] += linear_from_srgb8(picture.rgba[i * 4 + c]);
+    ++count_;
+}
+
+Picture LinearAverage::picture() const {
+    LOAM_CHECK(count_ > 0, "an average of no pictures");
+    Picture out{width_, height_, std::vector<uint8_t>(sum_.size() / 3 * 4, 255)};
+    const float share = 1.0f / static_cast<float>(count_);
+    for (size_t i = 0; i < sum_.size() / 3; ++i)
+        for (size_t c = 0; c < 3; ++c) out.rgba[i * 4 + c] = srgb8_from_linear(sum_[i * 3 + c] * share);
+    return out;
+}
+
+double psnr_db(const Picture& a, const Picture& b) {
+    check_same_size(a, b);
+    double squares = 0;
+    for (size_t i = 0; i < a.rgba.size(); ++i)
+        if (i % 4 != 3) {
+            const double d = static_cast<double>(a.rgba[i]) - b.rgba[i];
+            squares += d * d;
+        }
+    if (squares == 0) return std::numeric_limits<double>::infinity();
+    return 10.0 * std::log10(255.0 * 255.0 * static_cast<double>(a.rgba.size() / 4 * 3) / squares);
+}
+
+double laplacian_energy(const Picture& picture) {
+    double sum = 0;
+    for (int y = 1; y + 1 < picture.height; ++y)
+        for (int x = 1; x + 1 < picture.width; ++x) {
+            const double l = 4 * luma(picture, x, y) - luma(picture, x - 1, y) - luma(picture, x + 1, y) -
+                             luma(picture, x, y - 1) - luma(picture, x, y + 1);
+            sum += l * l;
+        }
+    return sum / std::max(1.0, (picture.width - 2.0) * (picture.height - 2.0));
+}
+
+double differing_share(const Picture& a, const Picture& b, int tolerance) {
+    check_same_size(a, b);
+    size_t differing = 0;
+    for (size_t i = 0; i + 3 < a.rgba.size(); i += 4)
+        for (size_t c = 0; c < 3; ++c)
+            if (std::abs(int(a.rgba[i + c]) - int(b.rgba[i + c])) > tolerance) {
+                ++differing;
+                break;
+            }
+    return static_cast<double>(differing) / static_cast<double>(std::max<size_t>(1, a.rgba.size() / 4));
+}
+
+} // namespace loam

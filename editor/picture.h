@@ -1,0 +1,31 @@
+// Arithmetic on pictures: averages in linear light, and how far one picture is from another.
+#pragma once
+
+#include <vector>
+
+#include "editor/session.h"
+
+namespace loam {
+
+[[nodiscard]] float linear_from_srgb8(uint8_t value);
+[[nodiscard]] uint8_t srgb8_from_linear(float value);
+
+// Mean of pictures of one size, in linear light.
+class LinearAverage {
+  public:
+    void add(const Picture& picture);
+    [[nodiscard]] Picture picture() const;
+
+  private:
+    int width_ = 0, height_ = 0, count_ = 0;
+    std::vector<float> sum_; // RGB a pixel
+};
+
+// Peak signal-to-noise ratio of the sRGB-encoded RGB channels in dB; equal pictures give infinity. Sizes must agree.
+[[nodiscard]] double psnr_db(const Picture& a, const Picture& b);
+// Mean square of the Laplacian of the luma (4-neighbour stencil, borders left out): the energy of fine detail.
+[[nodiscard]] double laplacian_energy(const Picture& picture);
+// Share of pixels of which any channel differs by more than `tolerance`.
+[[nodiscard]] double differing_share(const Picture& a, const Picture& b, int tolerance);
+
+} // namespace loam

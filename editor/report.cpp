@@ -1,0 +1,85 @@
+#include "editor/report.h"
+
+namespace loam {
+
+namespace {
+
+Json rects(const std::vector<WorldRect>& list) {
+    Json out = Json::array();
+    for (const WorldRect& r : list) out.push_back({r.min_x, r.min_y, r.max_x, r.max_y});
+    return out;
+}
+
+Json counters(const VirtualMap::Counters& c) {
+    return {{"pages_composed", c.pages_composed},
+            {"texels_composed", c.texels_composed},
+            {"pages_dirtied", c.pages_dirtied},
+            {"ejected", c.ejected}};
+}
+
+} // namespace
+
+Json to_report(const Dirt& dirt) {
+    return {{"height", rects(dirt.height)}, {"index", rects(dirt.index)}, {"texture", rects(dirt.texture)}};
+}
+
+Json to_report(const Document::Statistics& s) {
+    return {{"height_pages", s.height_pages}, {"index_pages", s.index_pages},   {"database_bytes", s.database_bytes},
+            {"operators", s.operators},       {"commands", s.commands},         {"cached_pages", s.cached_pages},
+            {"cache_bytes", s.cache_bytes}};
+}
+
+Json to_report(const ProjectSettings& s) {
+    const WorldRect bounds = s.bounds();
+    Json layers = Json::array();
+    for (const LayerEntry& layer : s.layers) layers.push_back({{"name", layer.name}, {"file", layer.file}, {"tile_m", layer.tile_m}});
+    return {{"name", s.name},
+            {"size_m", {bounds.width(), bounds.height()}},
+            {"height_samples", {s.height_samples_x, s.height_samples_y}},
+            {"height_spacing_m", s.height_spacing_m},
+            {"refine", s.refine},
+            {"index_spacing_m", s.index_spacing_m},
+            {"sun_azimuth_rad", s.sun_azimuth_rad},
+            {"sun_elevation_rad", s.sun_elevation_rad},
+            {"haze_per_km", s.haze_per_km},
+            {"layers", layers}};
+}
+
+Json to_report(const FrameStatistics& s) {
+    Json memory = Json::object(), passes = Json::array();
+    for (const MemoryRow& row : s.memory) memory[row.name] = row.bytes;
+    for (const gpu::PassTime& pass : s.passes) passes.push_back({{"pass", std::string(pass.name)}, {"gpu_ms", pass.gpu_ms}});
+    const VirtualTexture::Statistics& t = s.texture;
+    return {{"patches", s.patches},
+            {"patches_visible", s.patches_visible},
+            {"triangles", s.triangles},
+            {"height_pages", s.height_pages},
+            {"index_pages", s.index_pages},
+            {"shadow_cascades_drawn", s.shadow_cascades_drawn},
+            {"height", counters(s.height)},
+            {"index", counters(s.index)},
+            {"texture",
+             {{"resident_pages", t.resident_pages},
+              {"capacity_pages", t.capacity_pages},
+              {"live_sectors", t.live_sectors},
+              {"requested_pages", t.requested_pages},
+              {"missing_pages", t.missing_pages},
+              {"dirty_pages", t.dirty_pages},
+              {"pages_dirtied", t.pages_dirtied},
+              {"pages_composed", t.pages_composed},
+              {"rects_composed", t.rects_composed},
+              {"texels_composed", t.texels_composed},
+              {"gpu_bytes", t.gpu_bytes}}},
+            {"memory_bytes", memory},
+            {"passes", passes}};
+}
+
+Json memory_report(Session& session) {
+    const gpu::Device& device = *session.device();
+    return {{"device", device.allocated_bytes(gpu::MemoryUse::device)},
+            {"upload", device.allocated_bytes(gpu::MemoryUse::upload)},
+            {"readback", device.allocated_bytes(gpu::MemoryUse::readback)},
+            {"rings", session.ring()->ring_bytes()}};
+}
+
+} // namespace loam

@@ -1,0 +1,248 @@
+#include "editor/session.h"
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+#include "editor/image_file.h"
+#include "editor/picture.h"
+#include "runtime/base/log.h"
+#include "runtime/base/units.h"
+
+namespace loam {
+
+namespace {
+
+constexpr uint32_t kFramesInFlight = 2;
+// Feedback is read back three frames later: the picture rests once so many frames in a row found nothing to improve.
+constexpr int kRestingFrames = 4;
+// The reference: geometry this many node sides around the camera at full detail (a few hundred patches), with slots for all of them.
+constexpr double kReferenceSplitDistance = 6.0;
+constexpr int kReferenceHeightSlots = 1024;
+constexpr int kReferenceSupersample = 4;
+
+Result<double> largest_height_m(const Document& document) {
+    const auto lock = document.read_lock();
+    const int mip = std::max(0, document.height_mip_count() - 1);
+    const int width = ((document.settings().height_samples_x - 1) >> mip) + 1;
+    const int height = ((document.settings().height_samples_y - 1) >> mip) + 1;
+    std::vector<int32_t> mm(static_cast<size_t>(width) * static_cast<size_t>(height));
+    document.read_heights_mm(mip, 0, 0, width, height, mm.data());
+    return height_m_from_mm(*std::max_element(mm.begin(), mm.end()));
+}
+
+} // namespace
+
+struct Session::Recorder {
+    std::filesystem::path path;
+    std::FILE* file = nullptr;
+    ~Recorder() {
+        if (file) std::fclose(file);
+    }
+};
+
+Session::Session() = default;
+Session::~Session() {
+    if (device_) device_->wait_idle();
+}
+
+Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& project, const SessionDesc& desc) {
+    auto document = Document::open(project, desc.mode);
+    if (!document) return document.error();
+    std::unique_ptr<Session> session(new Session());
+    session->desc_ = desc;
+    session->document_ = std::move(*document);
+    return session;
+}
+
+Status Session::make_device() {
+    if (device_) return {};
+    auto device = gpu::Device::create(desc_.device);
+    if (!device) return device.error();
+    auto ring = gpu::FrameRing::create(**device, kFramesInFlight);
+    if (!ring) return ring.error();
+    device_ = std::move(*device);
+    ring_ = std::move(*ring);
+    return {};
+}
+
+Result<Renderer*> Session::renderer() {
+    if (renderer_) return renderer_.get();
+    LOAM_TRY(make_device());
+    auto made = Renderer::create(*device_, *ring_, *document_, desc_.renderer);
+    if (!made) return made.error();
+    renderer_ = std::move(*made);
+    query_heights_.reset();
+    query_indices_.reset();
+    return renderer_.get();
+}
+
+// --- edits ---
+
+Result<Dirt> Session::apply(const Command& command) {
+    auto dirt = document_->apply(command);
+    if (!dirt) return dirt;
+    if (renderer_) renderer_->on_dirt(*dirt);
+    if (query_heights_) query_heights_->on_dirt(dirt->height);
+    if (query_indices_) query_indices_->on_dirt(dirt->index);
+    if (recorder_) {
+        const std::string line = to_json(command) + "\n";
+        if (std::fputs(line.c_str(), recorder_->file) < 0 || std::fflush(recorder_->file) != 0) {
+            log(LogLevel::error, "recording to {} stopped: {}", recorder_->path.string(), std::strerror(errno));
+            recorder_.reset();
+        }
+    }
+    return dirt;
+}
+
+Status Session::record_to(const std::filesystem::path& file) {
+    auto recorder = std::make_unique<Recorder>();
+    recorder->path = file;
+    recorder->file = std::fopen(file.c_str(), "a");
+    if (!recorder->file) return error("cannot record to {}: {}", file.string(), std::strerror(errno));
+    recorder_ = std::move(recorder);
+    return {};
+}
+
+// --- pictures ---
+
+Status Session::one_frame(Renderer& renderer, const Camera& camera, glm::uvec2 extent, const FrameSettings& settings,
+                          Picture* picture) {
+    auto frame = ring_->begin();
+    if (!frame) return frame.error();
+    gpu::Commands& commands = (*frame)->commands;
+    LOAM_TRY(renderer.render(*ring_, commands, camera, extent, settings));
+    if (picture) {
+        gpu::Image& image = renderer.picture();
+        const glm::uvec2 filled = renderer.picture_size();
+        const size_t image_width = image.width();
+        picture->width = static_cast<int>(filled.x);
+        picture->height = static_cast<int>(filled.y);
+        ring_->read_back(commands, image, [picture, filled, image_width](std::span<const std::byte> bytes) {
+            const size_t row_bytes = size_t{4} * filled.x;
+            picture->rgba.resize(row_bytes * filled.y);
+            for (size_t row = 0; row < filled.y; ++row)
+                std::memcpy(picture->rgba.data() + row * row_bytes, bytes.data() + row * image_width * 4, row_bytes);
+        });
+    }
+    LOAM_TRY(ring_->finish(**frame));
+    ++frames_rendered_;
+    return {};
+}
+
+Result<Picture> Session::settle(Renderer& renderer, const RenderRequest& request, const FrameSettings& frame) {
+    const glm::uvec2 extent(request.width, request.height);
+    int resting = 0;
+    last_render_settled_ = false;
+    // Only the last frame is read back.
+    for (int i = 0; i + 1 < request.max_frames && resting < kRestingFrames; ++i) {
+        LOAM_TRY(one_frame(renderer, request.camera, extent, frame, nullptr));
+        resting = renderer.settled() ? resting + 1 : 0;
+    }
+    last_render_settled_ = resting >= kRestingFrames;
+    Picture picture;
+    LOAM_TRY(one_frame(renderer, request.camera, extent, frame, &picture));
+    return picture;
+}
+
+Result<Picture> Session::supersampled(Renderer& renderer, const RenderRequest& request, const FrameSettings& frame) {
+    const int n = std::max(1, request.supersample);
+    if (n == 1) return settle(renderer, request, frame);
+    LinearAverage average;
+    bool all_settled = true;
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+            FrameSettings jittered = frame;
+            jittered.jitter_px = {(i + 0.5) / n - 0.5, (j + 0.5) / n - 0.5};
+            auto picture = settle(renderer, request, jittered);
+            if (!picture) return picture;
+            all_settled = all_settled && last_render_settled_;
+            average.add(*picture);
+        }
+    last_render_settled_ = all_settled;
+    return average.picture();
+}
+
+Result<Picture> Session::render(const RenderRequest& request) {
+    if (!request.reference) {
+        auto renderer = this->renderer();
+        if (!renderer) return renderer.error();
+        return supersampled(**renderer, request, request.frame);
+    }
+    LOAM_TRY(make_device());
+    RendererDesc desc = desc_.renderer;
+    desc.height_slots = std::max(desc.height_slots, kReferenceHeightSlots);
+    desc.patch_split_distance = std::max(desc.patch_split_distance, kReferenceSplitDistance);
+    auto reference = Renderer::create(*device_, *ring_, *document_, desc);
+    if (!reference) return reference.error();
+    RenderRequest direct = request;
+    direct.frame.shading = Shading::direct;
+    direct.frame.render_scale = 1.0f;
+    direct.frame.fine_filter = true;
+    direct.supersample = std::max(request.supersample, kReferenceSupersample);
+    return supersampled(**reference, direct, direct.frame);
+}
+
+Status Session::step(const Camera& camera, int width, int height, const FrameSettings& settings, int frames) {
+    auto renderer = this->renderer();
+    if (!renderer) return renderer.error();
+    for (int i = 0; i < frames; ++i) LOAM_TRY(one_frame(**renderer, camera, glm::uvec2(width, height), settings, nullptr));
+    return {};
+}
+
+Camera Session::default_camera() {
+    const WorldRect bounds = document_->bounds();
+    const double side = std::max(bounds.width(), bounds.height());
+    const glm::dvec2 center = bounds.center();
+    const double ground_m = height_m(center.x, center.y).ok() ? *height_m(center.x, center.y) : 0.0;
+    auto top = largest_height_m(*document_);
+    // Beyond the corner and a third of the map up: near ground fills the foot of the picture, the far edge meets the sky.
+    const glm::dvec3 eye(center.x - 0.62 * side, center.y - 0.72 * side,
+                         std::max(ground_m + 0.40 * side, (top ? *top : 0.0) + 0.16 * side));
+    return Camera::look_at(eye, {center.x, center.y - 0.06 * side, ground_m}, 0.85);
+}
+
+// --- queries ---
+
+Status Session::make_query_maps() {
+    if (query_heights_) return {};
+    auto heights = HeightMap::create(nullptr, *document_, {.gpu = false});
+    if (!heights) return heights.error();
+    auto indices = IndexMap::create(nullptr, *document_, {.gpu = false});
+    if (!indices) return indices.error();
+    query_heights_ = std::move(*heights);
+    query_indices_ = std::move(*indices);
+    return {};
+}
+
+Result<double> Session::height_m(double x_m, double y_m) {
+    if (renderer_) return renderer_->height_m(x_m, y_m);
+    LOAM_TRY(make_query_maps());
+    return query_heights_->height_m(x_m, y_m);
+}
+
+Result<glm::dvec3> Session::normal(double x_m, double y_m) {
+    if (renderer_) return renderer_->normal(x_m, y_m);
+    LOAM_TRY(make_query_maps());
+    return query_heights_->normal(x_m, y_m);
+}
+
+Result<IndexTexel> Session::layer_at(double x_m, double y_m) {
+    if (renderer_) return renderer_->layer_at(x_m, y_m);
+    LOAM_TRY(make_query_maps());
+    return query_indices_->texel_at(x_m, y_m);
+}
+
+Result<std::optional<glm::dvec3>> Session::ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m) {
+    if (renderer_) return renderer_->ray_cast(origin_m, direction, max_m);
+    LOAM_TRY(make_query_maps());
+    return query_heights_->ray_cast(origin_m, direction, max_m);
+}
+
+Status save_png(const std::filesystem::path& file, const Picture& picture) {
+    return write_rgba8_png(file, picture.width, picture.height, picture.rgba);
+}
+
+} // namespace loam

@@ -1,0 +1,132 @@
+"""Edits through the Python module: they change what they say, undo brings back every bit, all of it survives closing."""
+import json
+
+import loam
+import numpy as np
+import pytest
+from conftest import run_loam
+
+
+def test_raise_lifts_the_ground_at_its_centre_and_nowhere_else(plain):
+    with loam.open(str(plain)) as p:
+        near, far = p.height(128, 128), p.height(40, 40)
+        dirt = p.sculpt("raise", [(128, 128)], radius_m=10, strength=2)
+        assert dirt["height"]
+        assert p.height(128, 128) == pytest.approx(near + 2, abs=0.002)
+        assert p.height(40, 40) == far
+        p.undo()
+        assert p.height(128, 128) == near
+
+
+def test_every_kind_of_command_is_undone_bit_for_bit(plain):
+    with loam.open(str(plain)) as p:
+        before = p.digest()
+        p.sculpt("raise", [(60, 60), (62, 60)], radius_m=8)
+        p.sculpt("smooth", [(60, 60)], radius_m=8, strength=0.7)
+        p.sculpt("flatten", [(90, 60)], radius_m=8, strength=1, target_m=12)
+        p.paint([(100, 100)], layer=p.layers[1], radius_m=6)
+        p.paint([(100, 100)], tint=(1, 0.2, 0.2), radius_m=6)
+        p.crater(180, 180, radius_m=12, seed=5)
+        p.footprints([(30, 30, 0.0), (30.2, 30.7, 0.1)])
+        after = p.digest()
+        assert after != before
+        for _ in range(7):
+            p.undo()
+        assert p.digest() == before
+        assert not p.can_undo
+        for _ in range(7):
+            p.redo()
+        assert p.digest() == after
+        with pytest.raises(loam.Error, match="nothing to redo"):
+            p.redo()
+
+
+def test_edits_and_their_undo_survive_closing(plain):
+    with loam.open(str(plain)) as p:
+        before = p.digest()
+        p.crater(128, 128, radius_m=15, seed=2)
+        inside = p.height(128, 128)
+        after = p.digest()
+    with loam.open(str(plain)) as p:
+        assert p.digest() == after
+        assert p.height(128, 128) == inside
+        assert p.history()[0]["command"]["cmd"] == "crater"
+        p.undo()
+        assert p.digest() == before
+    assert loam.verify(str(plain)) == []
+
+
+def test_a_group_is_undone_as_one(plain):
+    with loam.open(str(plain)) as p:
+        before = p.digest()
+        for i in range(5):
+            p.sculpt("raise", [(100 + i, 100)], group=77)
+        p.undo()
+        assert p.digest() == before
+
+
+def test_what_was_recorded_replays_to_the_same_document(plain_template, tmp_path):
+    import shutil
+    first, second, script = tmp_path / "a", tmp_path / "b", tmp_path / "script.jsonl"
+    shutil.copytree(plain_template, first)
+    shutil.copytree(plain_template, second)
+    with loam.open(str(first)) as p:
+        p.record_to(str(script))
+        p.sculpt("lower", [(50, 50), (55, 52)], radius_m=9)
+        p.crater(120, 90, radius_m=8, seed=9)
+        p.undo()
+        p.paint([(80, 80)], layer=p.layers[0])
+        digest = p.digest()
+    script.write_text("# a comment\n\n" + script.read_text())
+    done = run_loam("replay", second, script, "--json")
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["commands"] == 4
+    with loam.open(str(second)) as p:
+        assert p.digest() == digest
+
+
+def test_numpy_values_and_json_text_are_commands_too(plain):
+    with loam.open(str(plain)) as p:
+        p.apply({"cmd": "crater", "x": np.float32(64), "y": np.float64(64), "radius_m": np.int32(5), "seed": 1})
+        p.apply('{"cmd":"crater","x":90,"y":64,"radius_m":5,"seed":2}')
+        assert [o["x"] for o in p.operators()] == [64, 90]
+
+
+def test_bad_commands_say_what_is_wrong_and_change_nothing(plain):
+    with loam.open(str(plain)) as p:
+        before = p.digest()
+        for command in ({"cmd": "explode"}, {"cmd": "crater", "x": 1}, {"cmd": "crater", "x": 1, "y": 2, "depht": 3},
+                        {"cmd": "paint", "dabs": [[1, 1]], "layer": "no such layer"}, "not json"):
+            with pytest.raises(loam.Error) as problem:
+                p.apply(command)
+            assert len(str(problem.value)) > 10
+        assert p.digest() == before
+
+
+def test_queries_take_scalars_and_arrays(plain):
+    with loam.open(str(plain), read_only=True) as p:
+        x = np.linspace(10, 200, 7)
+        heights = p.height(x, 50.0)
+        assert heights.shape == (7,)
+        assert heights[3] == p.height(float(x[3]), 50.0)
+        normals = p.normal(x, x)
+        assert normals.shape == (7, 3)
+        np.testing.assert_allclose(np.linalg.norm(normals, axis=1), 1, atol=1e-3)
+        assert p.layer(x, x).dtype.kind in "if"
+        hit = p.ray_cast((128, 128, 500), (0, 0, -1))
+        assert hit[2] == pytest.approx(p.height(128, 128), abs=0.01)
+        assert p.ray_cast((128, 128, 500), (0, 0, 1)) is None
+
+
+def test_a_closed_project_says_so(plain):
+    p = loam.open(str(plain))
+    p.close()
+    assert p.closed
+    with pytest.raises(loam.Error, match="closed"):
+        p.digest()
+
+
+def test_a_read_only_project_refuses_edits(plain):
+    with loam.open(str(plain), read_only=True) as p:
+        with pytest.raises(loam.Error):
+            p.crater(10, 10)

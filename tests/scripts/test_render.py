@@ -1,0 +1,64 @@
+"""Pictures without a window: they show something, follow edits, and leave validation silent."""
+import json
+
+import loam
+import numpy as np
+import pytest
+from conftest import run_loam
+
+pytestmark = pytest.mark.usefixtures("has_device")
+VIEW = (128, 80, 60, 0, -40)
+
+
+def test_a_picture_has_sky_ground_and_no_validation_message(plain):
+    with loam.open(str(plain), read_only=True, validation=True) as p:
+        picture = p.render(size=(320, 180))
+        assert picture.shape == (180, 320, 4) and picture.dtype == np.uint8
+        assert picture[..., :3].std() > 4
+        assert (picture[..., 3] == 255).all()
+        assert p.stats()["settled"]
+        assert p.validation_messages() == 0
+
+
+def test_the_same_picture_twice(plain):
+    pictures = []
+    for _ in range(2):
+        with loam.open(str(plain), read_only=True) as p:
+            pictures.append(p.render(VIEW, size=(160, 90)))
+    assert np.array_equal(*pictures)
+
+
+def test_a_crater_is_seen_and_undo_brings_the_picture_back(plain):
+    with loam.open(str(plain), validation=True) as p:
+        before = p.render(VIEW, size=(320, 180))
+        p.crater(128, 140, radius_m=12, seed=1)
+        p.step(VIEW, 1, size=(320, 180))
+        with_crater = p.render(VIEW, size=(320, 180))
+        assert (np.abs(with_crater.astype(int) - before).max(axis=2) > 8).mean() > 0.01
+        p.undo()
+        after = p.render(VIEW, size=(320, 180))
+        assert np.array_equal(before, after)
+        assert p.validation_messages() == 0
+
+
+def test_the_reference_is_close_to_the_picture(plain):
+    with loam.open(str(plain), read_only=True) as p:
+        picture = p.render(VIEW, size=(160, 90), supersample=2).astype(float)
+        reference = p.render(VIEW, size=(160, 90), reference=True).astype(float)
+    psnr = 10 * np.log10(255**2 / max(1e-9, ((picture - reference)[..., :3] ** 2).mean()))
+    assert psnr > 25, psnr
+
+
+def test_render_from_the_command_line(plain, tmp_path):
+    done = run_loam("render", plain, "--look-at", "128,20,90,128,128,0", "-o", tmp_path / "p.png", "--size", "160x90", "--json", "--validation")
+    assert done.returncode == 0, done.stderr
+    figures = json.loads(done.stdout)
+    assert figures["settled"] and figures["size"] == [160, 90] and figures["validation_messages"] == 0
+    assert (tmp_path / "p.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_info_has_a_memory_table(plain):
+    done = run_loam("info", plain, "--gpu", "--json", "--size", "160x90")
+    assert done.returncode == 0, done.stderr
+    figures = json.loads(done.stdout)
+    assert figures["frame"]["memory_bytes"] and figures["devices"]
