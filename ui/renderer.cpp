@@ -24,9 +24,15 @@ gpu::GraphicsDesc pipeline_desc(VkFormat format, bool images) {
 
 }  // namespace
 
+UiRenderer::UiRenderer(gpu::Device& device, gpu::Pipeline shapes, gpu::Pipeline images, gpu::Sampler nearest,
+                       gpu::Sampler linear)
+    : device_(&device),
+      shapes_(std::move(shapes)),
+      images_(std::move(images)),
+      nearest_(std::move(nearest)),
+      linear_(std::move(linear)) {}
+
 Result<UiRenderer> UiRenderer::create(gpu::Device& device, VkFormat color_format) {
-    UiRenderer r;
-    r.device_ = &device;
     auto shapes = gpu::Pipeline::create(device, pipeline_desc(color_format, false));
     if (!shapes) return shapes.error();
     auto images = gpu::Pipeline::create(device, pipeline_desc(color_format, true));
@@ -35,11 +41,8 @@ Result<UiRenderer> UiRenderer::create(gpu::Device& device, VkFormat color_format
     if (!nearest) return nearest.error();
     auto linear = gpu::Sampler::create(device, {});
     if (!linear) return linear.error();
-    r.shapes_ = std::move(*shapes);
-    r.images_ = std::move(*images);
-    r.nearest_ = std::move(*nearest);
-    r.linear_ = std::move(*linear);
-    return r;
+    return UiRenderer(device, std::move(*shapes), std::move(*images), std::move(*nearest),
+                      std::move(*linear));
 }
 
 TextureId UiRenderer::add_image(VkImageView view) {

@@ -26,10 +26,11 @@ class UiRenderer {
     void cmd_record(gpu::Commands& commands, VkExtent2D extent);
 
   private:
-    UiRenderer() = default;
+    UiRenderer(gpu::Device& device, gpu::Pipeline shapes, gpu::Pipeline images, gpu::Sampler nearest,
+               gpu::Sampler linear);
     Status upload_atlas(gpu::FrameRing& ring, gpu::Commands& commands, GlyphAtlas& atlas);
 
-    gpu::Device* device_ = nullptr;
+    gpu::Device* device_;
     gpu::Pipeline shapes_, images_;
     gpu::Sampler nearest_, linear_;
     gpu::Image atlas_;
