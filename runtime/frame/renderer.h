@@ -26,7 +26,8 @@ namespace loam {
 
 enum class Quality { very_low, low, mid, high, ultra }; // virtual texture sizes of the talk: 13², 16², 22², 30², 42² pages
 enum class Shading { virtual_texture, direct };         // direct: the reference's per-pixel evaluation
-enum class DebugView { none, mips, sectors, normals, occlusion, patches, shadow, albedo };
+// mips: of the page shown; indirection: the texel as a colour. Numbered as in shaders/frame/debug_view.glsl.
+enum class DebugView { none, mips, sectors, normals, occlusion, indirection, shadow, albedo };
 
 struct RendererDesc {
     Quality quality = Quality::low;

@@ -271,6 +271,7 @@ Result<Pipeline> Pipeline::create(Device& device, const GraphicsDesc& desc) {
     return pipeline;
 }
 
+Pipeline::Pipeline() = default;
 Pipeline::Pipeline(Pipeline&& other) noexcept = default;
 Pipeline& Pipeline::operator=(Pipeline&& other) noexcept = default;
 Pipeline::~Pipeline() = default;

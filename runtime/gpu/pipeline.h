@@ -72,7 +72,7 @@ class Pipeline {
   public:
     static Result<Pipeline> create(Device& device, const ComputeDesc& desc);
     static Result<Pipeline> create(Device& device, const GraphicsDesc& desc);
-    Pipeline() = default;
+    Pipeline();
     Pipeline(Pipeline&& other) noexcept;
     Pipeline& operator=(Pipeline&& other) noexcept;
     ~Pipeline();

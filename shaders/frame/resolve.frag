@@ -1,0 +1,23 @@
+// Every pixel with the terrain's stencil, shaded from the virtual texture.
+// Source: Call of Duty talk, "Terrain Rendering": the opaque pass is a full-screen quad over the prepass' stencil.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define VT_FIRST_SLOT 5
+#include "shaders/frame/resolve_common.glsl"
+#include "shaders/texture/vt_sample.glsl"
+#include "shaders/frame/debug_view.glsl"
+
+layout(constant_id = 1) const bool kDebug = false;
+
+void main() {
+    Pixel p = read_pixel();
+    ivec2 sector;
+    vec2 offset_m;
+    vt_split(p.rel_m.xy, sector, offset_m);
+    VtSample t = vt_sample(sector, offset_m, p.log2_long, p.log2_short);
+    Surface s = Surface(t.albedo, bent_normal(p.ground, t.normal), t.gloss, t.occlusion, t.metalness);
+    vec3 color = lit_pixel(p, s);
+    if (kDebug) color = debug_color(p, s, t, color);
+    out_color = vec4(with_ring(p, color), 1.0);
+}

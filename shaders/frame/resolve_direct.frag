@@ -1,0 +1,14 @@
+// The reference's resolve: the same material functions per pixel, without page cache and compression.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define DIRECT_FIRST_SLOT 5
+#include "shaders/frame/resolve_common.glsl"
+#include "shaders/texture/direct.glsl"
+
+void main() {
+    Pixel p = read_pixel();
+    MaterialSample m = direct_material(p.rel_m.xy, mix(p.log2_long, p.log2_short, 0.5));
+    Surface s = Surface(m.albedo, bent_normal(p.ground, m.normal), m.gloss, m.occlusion, m.metalness);
+    out_color = vec4(with_ring(p, lit_pixel(p, s)), 1.0);
+}
