@@ -49,4 +49,4 @@ Camera Camera::look_at(glm::dvec3 eye, glm::dvec3 target, double fov_y_rad) {
     return camera;
 }
 
-} // namespace loam
+}  // namespace loam

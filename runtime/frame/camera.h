@@ -17,13 +17,14 @@ struct Camera {
     [[nodiscard]] glm::dvec3 forward() const;
     [[nodiscard]] glm::dvec3 right() const;
     [[nodiscard]] glm::dvec3 up() const;
-    // Camera-relative metres to clip space: reversed Z, infinite far plane, Y down as in Vulkan. `jitter_px` moves the
-    // picture by part of a pixel (accumulated supersampling).
-    [[nodiscard]] glm::dmat4 clip_from_rel(double width_px, double height_px, glm::dvec2 jitter_px = {0, 0}) const;
+    // Camera-relative metres to clip space: reversed Z, infinite far plane, Y down as in Vulkan. `jitter_px`
+    // moves the picture by part of a pixel (accumulated supersampling).
+    [[nodiscard]] glm::dmat4 clip_from_rel(double width_px, double height_px,
+                                           glm::dvec2 jitter_px = {0, 0}) const;
     // Direction through a pixel (0,0 = upper left corner of the picture), normalised.
     [[nodiscard]] glm::dvec3 ray(double x_px, double y_px, double width_px, double height_px) const;
     // Looks from `eye` to `target`; straight up or down keeps the yaw.
     [[nodiscard]] static Camera look_at(glm::dvec3 eye, glm::dvec3 target, double fov_y_rad = 1.0);
 };
 
-} // namespace loam
+}  // namespace loam

@@ -20,15 +20,16 @@ using gpu::Access;
 
 namespace {
 
-// What a device profile changes. Software figures follow the measurements of the platform: about 50,000 triangles a frame,
-// one or two whole texture pages a frame, uncompressed pages (their samples are twice as fast there as BC1's).
+// What a device profile changes. Software figures follow the measurements of the platform: about 50,000
+// triangles a frame, one or two whole texture pages a frame, uncompressed pages (their samples are twice as
+// fast there as BC1's).
 struct ProfileDefaults {
     PageFormat page_format;
     int page_budget;
-    int height_pages, index_pages; // composed a frame
+    int height_pages, index_pages;  // composed a frame
     double split_distance;
     uint32_t shadow_texels;
-    int shadow_budget;             // cascades drawn a frame
+    int shadow_budget;  // cascades drawn a frame
 };
 
 ProfileDefaults profile_defaults(gpu::Profile profile) {
@@ -38,19 +39,32 @@ ProfileDefaults profile_defaults(gpu::Profile profile) {
 
 int pages_per_side(Quality quality) {
     switch (quality) {
-        case Quality::very_low: return 13;
-        case Quality::low: return 16;
-        case Quality::mid: return 22;
-        case Quality::high: return 30;
-        case Quality::ultra: return 42;
+        case Quality::very_low:
+            return 13;
+        case Quality::low:
+            return 16;
+        case Quality::mid:
+            return 22;
+        case Quality::high:
+            return 30;
+        case Quality::ultra:
+            return 42;
     }
     return 16;
 }
 
+constexpr uint32_t kMaterialSlot = 5;  // VT_FIRST_SLOT and DIRECT_FIRST_SLOT of the resolve shaders
+
 enum class ResolveKind { fast, fine, debug, direct };
 constexpr size_t kResolveKinds = 4;
 
-} // namespace
+// Jitter within a pixel is not another view.
+bool same_view(const Camera& a, const Camera& b) {
+    return a.position_m == b.position_m && a.yaw_rad == b.yaw_rad && a.pitch_rad == b.pitch_rad &&
+           a.fov_y_rad == b.fov_y_rad;
+}
+
+}  // namespace
 
 struct Renderer::Impl {
     Impl(gpu::Device& d, Document& doc, const RendererDesc& r)
@@ -75,7 +89,8 @@ struct Renderer::Impl {
     uint64_t frame = 0;
     glm::uvec2 picture_size{0};
     bool settled = false;
-    bool changed = true; // something changed since the last frame
+    bool changed = true;      // something changed since the last frame
+    uint64_t view_frame = 0;  // the first frame of the present view
     PatchSet patches;
     Camera last_camera;
     uint32_t cascades_drawn = 0;
@@ -83,7 +98,12 @@ struct Renderer::Impl {
     Status make_pipelines();
     Result<gpu::Pipeline*> resolve_pipeline(ResolveKind kind);
     Status create_texture(gpu::FrameRing& ring);
-    [[nodiscard]] shared::FrameUniforms uniforms(const Camera& camera, glm::uvec2 size, const FrameSettings& settings) const;
+    [[nodiscard]] shared::FrameUniforms uniforms(const Camera& camera, glm::uvec2 size,
+                                                 const FrameSettings& settings) const;
+    void request_direct_pages(double pixels_per_radian, double footprint_bias);
+    void use_material(gpu::Commands& commands, bool direct);
+    [[nodiscard]] std::vector<gpu::Bound> cached_material() const;
+    [[nodiscard]] std::vector<gpu::Bound> direct_material() const;
     void prepass(gpu::Commands& commands, glm::uvec2 size, const shared::FrameUniforms& u);
     Status light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& uniform_slice,
                  const Camera& camera, const FrameSettings& settings);
@@ -92,8 +112,8 @@ struct Renderer::Impl {
 Renderer::Renderer() = default;
 Renderer::~Renderer() = default;
 
-Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::FrameRing& ring, Document& document,
-                                                   const RendererDesc& desc) {
+Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::FrameRing& ring,
+                                                   Document& document, const RendererDesc& desc) {
     std::unique_ptr<Renderer> renderer(new Renderer);
     renderer->impl_ = std::make_unique<Impl>(device, document, desc);
     Impl& r = *renderer->impl_;
@@ -105,7 +125,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::Fra
     if (!indices) return indices.error();
     r.indices = std::move(*indices);
     LOAM_TRY(r.create_texture(ring));
-    auto terrain = TerrainPass::create(device, {kGbufferFormat, kOcclusionFormat}, device.caps().depth_stencil);
+    auto terrain =
+        TerrainPass::create(device, {kGbufferFormat, kOcclusionFormat}, device.caps().depth_stencil);
     if (!terrain) return terrain.error();
     r.terrain = std::make_unique<TerrainPass>(std::move(*terrain));
     auto shadows = ShadowCascades::create(device, r.defaults.shadow_texels);
@@ -147,16 +168,17 @@ Status Renderer::Impl::make_pipelines() {
     auto l = gpu::Sampler::create(device, {});
     if (!l) return l.error();
     linear = std::move(*l);
-    auto made = gpu::Pipeline::create(device, gpu::GraphicsDesc{.name = "sky",
-                                                                .vertex_shader = "frame/fullscreen.vert",
-                                                                .fragment_shader = "frame/sky.frag",
-                                                                .bindings = {gpu::storage_buffer(0)},
-                                                                .color_formats = {kPictureFormat},
-                                                                .depth_format = device.caps().depth_stencil,
-                                                                .stencil = {.enable = true,
-                                                                            .compare = VK_COMPARE_OP_NOT_EQUAL,
-                                                                            .reference = 1,
-                                                                            .write_mask = 0}});
+    auto made = gpu::Pipeline::create(
+        device,
+        gpu::GraphicsDesc{
+            .name = "sky",
+            .vertex_shader = "frame/fullscreen.vert",
+            .fragment_shader = "frame/sky.frag",
+            .bindings = {gpu::storage_buffer(0)},
+            .color_formats = {kPictureFormat},
+            .depth_format = device.caps().depth_stencil,
+            .stencil = {
+                .enable = true, .compare = VK_COMPARE_OP_NOT_EQUAL, .reference = 1, .write_mask = 0}});
     if (!made) return made.error();
     sky = std::move(*made);
     for (ResolveKind kind : {ResolveKind::fast, ResolveKind::fine})
@@ -168,18 +190,26 @@ Result<gpu::Pipeline*> Renderer::Impl::resolve_pipeline(ResolveKind kind) {
     gpu::Pipeline& pipeline = resolve[size_t(kind)];
     if (pipeline) return &pipeline;
     const bool direct = kind == ResolveKind::direct;
-    gpu::GraphicsDesc d{.name = direct ? "resolve direct" : "resolve",
-                        .vertex_shader = "frame/fullscreen.vert",
-                        .fragment_shader = direct ? "frame/resolve_direct.frag" : "frame/resolve.frag",
-                        .push_bytes = sizeof(shared::ResolvePush),
-                        .constants = {{0, kind == ResolveKind::fast ? 0u : 1u}, {1, kind == ResolveKind::debug ? 1u : 0u}},
-                        .color_formats = {kPictureFormat},
-                        .depth_format = device.caps().depth_stencil,
-                        .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
+    gpu::GraphicsDesc d{
+        .name = direct ? "resolve direct" : "resolve",
+        .vertex_shader = "frame/fullscreen.vert",
+        .fragment_shader = direct ? "frame/resolve_direct.frag" : "frame/resolve.frag",
+        .push_bytes = sizeof(shared::ResolvePush),
+        // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal.
+        .constants = {{0, kind == ResolveKind::fast ? 0u : 1u},
+                      {1, kind == ResolveKind::debug ? 1u : 0u},
+                      {20, kind == ResolveKind::fast ? 0u : 1u},
+                      {21, layers->has_metal ? 1u : 0u}},
+        .color_formats = {kPictureFormat},
+        .depth_format = device.caps().depth_stencil,
+        .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
     d.bindings = {gpu::storage_buffer(0), gpu::sampled_image(1), gpu::sampled_image(2), gpu::sampled_image(3),
                   gpu::sampled_image(4)};
-    const auto material = direct ? direct_bindings() : vt_bindings();
-    d.bindings.insert(d.bindings.end(), material.begin(), material.end());
+    // Then the material's: shaders/texture/direct.glsl or vt_sample.glsl, from slot 5.
+    const uint32_t buffers = direct ? 3 : 2, images = direct ? 5 : 4;
+    for (uint32_t i = 0; i < buffers + images; ++i)
+        d.bindings.push_back(i < buffers ? gpu::storage_buffer(kMaterialSlot + i)
+                                         : gpu::sampled_image(kMaterialSlot + i));
     auto made = gpu::Pipeline::create(device, d);
     if (!made) return made.error();
     pipeline = std::move(*made);
@@ -210,26 +240,88 @@ void Renderer::Impl::prepass(gpu::Commands& commands, glm::uvec2 size, const sha
                                                 {heights->normals(), Access::fragment_sampled}});
     const gpu::ColorTarget colors[] = {{targets.gbuffer.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}},
                                        {targets.occlusion.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}}};
-    commands.begin_rendering({size.x, size.y}, colors,
-                             {.view = targets.depth.view(), .load = VK_ATTACHMENT_LOAD_OP_CLEAR, .has_stencil = true});
+    commands.begin_rendering(
+        {size.x, size.y}, colors,
+        {.view = targets.depth.view(), .load = VK_ATTACHMENT_LOAD_OP_CLEAR, .has_stencil = true});
     commands.set_viewport(0, 0, float(size.x), float(size.y));
     terrain->cmd_draw_prepass(commands, patches, *heights, u.clip_from_rel, last_camera.position_m);
     commands.end_rendering();
 }
 
+// Direct shading looks up any place of the index map: every page under the visible patches, at the level that
+// the nearest pixel of the patch reads (shaders/texture/direct.glsl).
+void Renderer::Impl::request_direct_pages(double pixels_per_radian, double footprint_bias) {
+    const VirtualMap& map = indices->map();
+    const glm::dvec3 eye = last_camera.position_m;
+    for (int i = 0; i < patches.visible_count; ++i) {
+        const shared::PatchInstance& patch = patches.patches[size_t(i)];
+        const glm::dvec2 corner = glm::dvec2(patches.origin_step + patch.origin) * patches.step_m;
+        const double side = patch.stride * patches.step_m * kPatchQuads;
+        const WorldRect rect =
+            intersected({corner.x, corner.y, corner.x + side, corner.y + side}, map.desc().bounds);
+        if (rect.empty()) continue;
+        const double near = std::max(rect.distance(eye.x, eye.y), 1.0);
+        const double wanted =
+            std::floor(std::log2(near / pixels_per_radian / map.desc().spacing_m) + 1.0 + footprint_bias);
+        const int level = int(std::clamp(wanted, 0.0, double(map.desc().level_count - 1)));
+        const double page = map.page_size_m(level);
+        for (int y = int(rect.min_y / page); y <= int(rect.max_y / page); ++y)
+            for (int x = int(rect.min_x / page); x <= int(rect.max_x / page); ++x)
+                indices->request({level, x, y}, float(1.0 / near));
+    }
+}
+
+void Renderer::Impl::use_material(gpu::Commands& commands, bool direct) {
+    if (direct)
+        commands.use({{indices->indices(), Access::fragment_sampled},
+                      {indices->tints(), Access::fragment_sampled},
+                      {indices->page_table(), Access::fragment_sampled},
+                      {texture->direct_params(), Access::fragment_sampled},
+                      {texture->direct_places(), Access::fragment_sampled},
+                      {layers->albedo_reveal, Access::fragment_sampled},
+                      {layers->normal_gloss_occlusion, Access::fragment_sampled},
+                      {layers->metalness, Access::fragment_sampled}});
+    else
+        commands.use({{texture->params(), Access::fragment_sampled},
+                      {texture->sector_table(), Access::fragment_sampled},
+                      {texture->indirection(), Access::fragment_sampled},
+                      {texture->atlas(0), Access::fragment_sampled},
+                      {texture->atlas(1), Access::fragment_sampled},
+                      {texture->atlas(2), Access::fragment_sampled}});
+}
+
+std::vector<gpu::Bound> Renderer::Impl::cached_material() const {
+    constexpr uint32_t s = kMaterialSlot;
+    return {{s, texture->params()},
+            {s + 1, texture->sector_table()},
+            {s + 2, texture->indirection().view(), texture->nearest_sampler()},
+            {s + 3, texture->atlas(0).view(), texture->sampler()},
+            {s + 4, texture->atlas(1).view(), texture->sampler()},
+            {s + 5, texture->atlas(2).view(), texture->sampler()}};
+}
+
+std::vector<gpu::Bound> Renderer::Impl::direct_material() const {
+    constexpr uint32_t s = kMaterialSlot;
+    return {{s, texture->direct_params()},
+            {s + 1, texture->direct_places()},
+            {s + 2, indices->page_table()},
+            {s + 3, indices->indices().view(), texture->nearest_sampler()},
+            {s + 4, indices->tints().view(), texture->nearest_sampler()},
+            {s + 5, layers->albedo_reveal.view(), layers->sampler},
+            {s + 6, layers->normal_gloss_occlusion.view(), layers->sampler},
+            {s + 7, layers->metalness.view(), layers->sampler}};
+}
+
 Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& slice,
                              const Camera& camera, const FrameSettings& settings) {
     const bool direct = settings.shading == Shading::direct;
-    const ResolveKind kind = direct                                 ? ResolveKind::direct
-                             : settings.debug != DebugView::none    ? ResolveKind::debug
-                             : settings.fine_filter                 ? ResolveKind::fine
-                                                                    : ResolveKind::fast;
+    const ResolveKind kind = direct                              ? ResolveKind::direct
+                             : settings.debug != DebugView::none ? ResolveKind::debug
+                             : settings.fine_filter              ? ResolveKind::fine
+                                                                 : ResolveKind::fast;
     auto pipeline = resolve_pipeline(kind);
     if (!pipeline) return pipeline.error();
-    if (direct)
-        use_direct_inputs(commands, *indices, *layers);
-    else
-        texture->use_inputs(commands);
+    use_material(commands, direct);
 
     const auto pass = commands.pass("resolve", {{targets.picture, Access::color_target},
                                                 {targets.depth, Access::depth_sampled},
@@ -252,12 +344,13 @@ Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu
         {3, targets.occlusion.view(), point},
         {4, shadows->atlas().view(), shadows->sampler()},
     };
-    const auto material = direct ? direct_bound(*indices, *layers) : texture->bound();
+    const std::vector<gpu::Bound> material = direct ? direct_material() : cached_material();
     bound.insert(bound.end(), material.begin(), material.end());
     commands.bind(**pipeline, bound);
     const glm::dvec2 ring = settings.ring_center_m - glm::dvec2(camera.position_m);
-    commands.push(**pipeline, shared::ResolvePush{glm::vec2(ring), float(settings.ring_radius_m), settings.ring_inner,
-                                                  uint32_t(settings.debug)});
+    commands.push(**pipeline,
+                  shared::ResolvePush{glm::vec2(ring), float(settings.ring_radius_m), settings.ring_inner,
+                                      uint32_t(settings.debug), settings.footprint_bias});
     commands.draw(3);
     commands.end_rendering();
     return {};
@@ -269,35 +362,38 @@ void Renderer::on_dirt(const Dirt& dirt) {
     r.heights->on_dirt(dirt.height);
     r.shadows->on_dirt(dirt.height);
     r.indices->on_dirt(dirt.index);
-    // A texel blends the index texels around it: one spacing on each side.
-    std::vector<WorldRect> texture = dirt.texture;
-    for (const WorldRect& rect : dirt.index)
-        texture.push_back(rect.grown(r.document.settings().index_spacing_m));
-    r.texture->on_dirt(texture);
+    r.texture->on_index_dirt(dirt.index);
+    r.texture->on_dirt(dirt.texture);
 }
 
 // The frame, top to bottom.
-Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Camera& camera, glm::uvec2 extent,
-                        const FrameSettings& settings) {
+Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Camera& camera,
+                        glm::uvec2 extent, const FrameSettings& settings) {
     Impl& r = *impl_;
     ++r.frame;
     const float scale = std::clamp(settings.render_scale, 0.1f, 1.0f);
     const glm::uvec2 size = glm::max(glm::uvec2(glm::round(glm::vec2(extent) * scale)), glm::uvec2(8));
     LOAM_TRY(r.targets.ensure(r.device, glm::max(extent, size)));
+    if (!same_view(camera, r.last_camera) || size != r.picture_size) r.view_frame = r.frame;
     r.picture_size = size;
     r.last_camera = camera;
 
     shared::FrameUniforms u = r.uniforms(camera, size, settings);
 
     // Pages: the cut of the height map, what it lacks, and what the texture needs of the index map.
-    const double split = r.desc.patch_split_distance > 0 ? r.desc.patch_split_distance : r.defaults.split_distance;
-    r.patches = select_patches(*r.heights, {.camera_m = camera.position_m,
-                                            .clip_from_rel = camera.clip_from_rel(size.x, size.y, settings.jitter_px),
-                                            .split_distance = split});
+    const double split =
+        r.desc.patch_split_distance > 0 ? r.desc.patch_split_distance : r.defaults.split_distance;
+    r.patches =
+        select_patches(*r.heights, {.camera_m = camera.position_m,
+                                    .clip_from_rel = camera.clip_from_rel(size.x, size.y, settings.jitter_px),
+                                    .split_distance = split});
     const TextureView view{.camera_m = camera.position_m,
                            .pixels_per_radian = size.y * 0.5 / std::tan(camera.fov_y_rad * 0.5),
-                           .frame = r.frame};
+                           .frame = r.frame,
+                           .budget_pages = settings.page_budget};
     r.texture->request_inputs(view);
+    if (settings.shading == Shading::direct)
+        r.request_direct_pages(view.pixels_per_radian, settings.footprint_bias);
     LOAM_TRY(r.heights->update(ring, commands, r.frame, r.defaults.height_pages));
     LOAM_TRY(r.indices->update(ring, commands, r.frame, r.defaults.index_pages));
     LOAM_TRY(r.texture->update(ring, commands, view));
@@ -323,7 +419,9 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     LOAM_TRY(r.light(commands, size, slice, camera, settings));
     commands.use({{r.targets.picture, Access::fragment_sampled}});
 
-    r.settled = !r.changed && r.texture->settled() && !r.heights->has_work() && !r.indices->has_work() &&
+    const bool asked = settings.shading == Shading::direct ||
+                       (r.texture->settled() && r.texture->last_feedback_frame() >= r.view_frame);
+    r.settled = !r.changed && asked && !r.heights->has_work() && !r.indices->has_work() &&
                 (!r.desc.shadows || r.shadows->settled());
     r.changed = false;
     return {};
@@ -347,7 +445,8 @@ bool Renderer::settled() const {
 
 uint32_t Renderer::pending_pages() const {
     const auto t = impl_->texture->statistics();
-    return t.missing_pages + t.dirty_pages + (impl_->heights->has_work() ? 1 : 0) + (impl_->indices->has_work() ? 1 : 0);
+    return t.missing_pages + t.dirty_pages + (impl_->heights->has_work() ? 1 : 0) +
+           (impl_->indices->has_work() ? 1 : 0);
 }
 
 double Renderer::height_m(double x_m, double y_m) {
@@ -396,4 +495,4 @@ Result<uint32_t> Renderer::count_stale_pages(gpu::FrameRing& ring) {
     return *stale + r.heights->count_stale_pages(r.document) + r.indices->count_stale_pages(r.document);
 }
 
-} // namespace loam
+}  // namespace loam

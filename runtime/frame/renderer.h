@@ -5,7 +5,8 @@
 //     auto frame = ring.begin();
 //     renderer->render(ring, (*frame)->commands, camera, {960, 540});
 //     ring.end(**frame);
-//     … renderer->picture() holds the picture (RGBA8, sRGB-encoded), `settled()` says whether another frame would improve it
+//     … renderer->picture() holds the picture (RGBA8, sRGB-encoded), `settled()` says whether another frame
+//     would improve it
 #pragma once
 
 #include <memory>
@@ -24,8 +25,14 @@
 
 namespace loam {
 
-enum class Quality { very_low, low, mid, high, ultra }; // virtual texture sizes of the talk: 13², 16², 22², 30², 42² pages
-enum class Shading { virtual_texture, direct };         // direct: the reference's per-pixel evaluation
+enum class Quality {
+    very_low,
+    low,
+    mid,
+    high,
+    ultra
+};  // virtual texture sizes of the talk: 13², 16², 22², 30², 42² pages
+enum class Shading { virtual_texture, direct };  // direct: the reference's per-pixel evaluation
 // mips: of the page shown; indirection: the texel as a colour. Numbered as in shaders/frame/debug_view.glsl.
 enum class DebugView { none, mips, sectors, normals, occlusion, indirection, shadow, albedo };
 
@@ -33,22 +40,23 @@ struct RendererDesc {
     Quality quality = Quality::low;
     std::optional<PageFormat> page_format;  // default by device profile
     int height_slots = 144, index_slots = 144;
-    int page_budget = 0;                    // whole texture pages a frame; 0: by profile
+    int page_budget = 0;  // whole texture pages a frame; 0: by profile
     bool shadows = true;
-    double patch_split_distance = 0;        // 0: by profile
+    double patch_split_distance = 0;  // 0: by profile
 };
 
 struct FrameSettings {
     Shading shading = Shading::virtual_texture;
     DebugView debug = DebugView::none;
-    float render_scale = 1.0f;     // share of the picture's width and height that is shaded
-    bool fine_filter = true;       // trilinear between page mips and so on; off while moving on software devices
+    float render_scale = 1.0f;  // share of the picture's width and height that is shaded
+    bool fine_filter = true;    // trilinear between page mips and so on; off while moving on software devices
     glm::dvec2 jitter_px{0, 0};
-    int page_budget = -1;          // overrides RendererDesc::page_budget when >= 0
+    float footprint_bias = 0;      // direct shading: log2, negative leaves filtering to supersampling
+    int page_budget = -1;  // overrides RendererDesc::page_budget when >= 0
     // Brush ring drawn on the ground by the resolve: centre in world metres, radius; radius 0: none.
     glm::dvec2 ring_center_m{0, 0};
     double ring_radius_m = 0;
-    float ring_inner = 0.5f;       // share of the radius where the hardness ring is drawn
+    float ring_inner = 0.5f;  // share of the radius where the hardness ring is drawn
 };
 
 struct MemoryRow {
@@ -63,13 +71,13 @@ struct FrameStatistics {
     VirtualTexture::Statistics texture;
     VirtualMap::Counters height, index;
     std::vector<MemoryRow> memory;
-    std::vector<gpu::PassTime> passes; // of the newest finished frame
+    std::vector<gpu::PassTime> passes;  // of the newest finished frame
 };
 
 class Renderer {
   public:
-    static Result<std::unique_ptr<Renderer>> create(gpu::Device& device, gpu::FrameRing& ring, Document& document,
-                                                    const RendererDesc& desc);
+    static Result<std::unique_ptr<Renderer>> create(gpu::Device& device, gpu::FrameRing& ring,
+                                                    Document& document, const RendererDesc& desc);
     ~Renderer();
 
     void on_dirt(const Dirt& dirt);
@@ -79,12 +87,13 @@ class Renderer {
     // Records one frame. The picture is `extent` · render_scale pixels in the upper left of picture().
     Status render(gpu::FrameRing& ring, gpu::Commands& commands, const Camera& camera, glm::uvec2 extent,
                   const FrameSettings& settings);
-    [[nodiscard]] gpu::Image& picture();         // RGBA8_UNORM, sRGB-encoded, last access fragment_sampled
-    [[nodiscard]] glm::uvec2 picture_size() const; // pixels of it that the last frame filled
-    [[nodiscard]] gpu::Image& gbuffer();         // tests: RGBA16F
+    [[nodiscard]] gpu::Image& picture();            // RGBA8_UNORM, sRGB-encoded, last access fragment_sampled
+    [[nodiscard]] glm::uvec2 picture_size() const;  // pixels of it that the last frame filled
+    [[nodiscard]] gpu::Image& gbuffer();            // tests: RGBA16F
     [[nodiscard]] gpu::Image& depth();
 
-    // Nothing to compose, nothing missing, nothing dirty: another frame from the same camera gives the same picture.
+    // Nothing to compose, nothing missing, nothing dirty: another frame from the same camera gives the same
+    // picture.
     [[nodiscard]] bool settled() const;
     // Pages that wait to be composed, over all maps.
     [[nodiscard]] uint32_t pending_pages() const;
@@ -93,7 +102,8 @@ class Renderer {
     [[nodiscard]] double height_m(double x_m, double y_m);
     [[nodiscard]] glm::dvec3 normal(double x_m, double y_m);
     [[nodiscard]] IndexTexel layer_at(double x_m, double y_m);
-    [[nodiscard]] std::optional<glm::dvec3> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m = 50'000);
+    [[nodiscard]] std::optional<glm::dvec3> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction,
+                                                     double max_m = 50'000);
 
     [[nodiscard]] FrameStatistics statistics() const;
     [[nodiscard]] const LayerSet& layers() const;
@@ -106,4 +116,4 @@ class Renderer {
     std::unique_ptr<Impl> impl_;
 };
 
-} // namespace loam
+}  // namespace loam

@@ -18,7 +18,8 @@ Status FrameTargets::ensure(gpu::Device& device, glm::uvec2 extent) {
     };
     const Entry entries[] = {
         {&depth, "depth", device.caps().depth_stencil,
-         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT},
+         VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+             VK_IMAGE_USAGE_TRANSFER_SRC_BIT},
         {&gbuffer, "g-buffer", kGbufferFormat, color},
         {&occlusion, "occlusion", kOcclusionFormat, color},
         {&picture, "picture", kPictureFormat, color},
@@ -36,4 +37,4 @@ uint64_t FrameTargets::bytes() const {
     return depth.bytes() + gbuffer.bytes() + occlusion.bytes() + picture.bytes();
 }
 
-} // namespace loam
+}  // namespace loam

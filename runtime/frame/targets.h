@@ -1,4 +1,5 @@
-// The pictures a frame is made in. They grow with the largest extent asked for and are not given back until then.
+// The pictures a frame is made in. They grow with the largest extent asked for and are not given back until
+// then.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -8,9 +9,9 @@
 
 namespace loam {
 
-inline constexpr VkFormat kGbufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT; // see shaders/frame/frame_io.h
+inline constexpr VkFormat kGbufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // see shaders/frame/frame_io.h
 inline constexpr VkFormat kOcclusionFormat = VK_FORMAT_R8_UNORM;
-inline constexpr VkFormat kPictureFormat = VK_FORMAT_R8G8B8A8_UNORM;      // holds sRGB-encoded colours
+inline constexpr VkFormat kPictureFormat = VK_FORMAT_R8G8B8A8_UNORM;  // holds sRGB-encoded colours
 
 struct FrameTargets {
     gpu::Image depth, gbuffer, occlusion, picture;
@@ -20,4 +21,4 @@ struct FrameTargets {
     [[nodiscard]] uint64_t bytes() const;
 };
 
-} // namespace loam
+}  // namespace loam

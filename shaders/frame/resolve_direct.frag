@@ -8,7 +8,7 @@
 
 void main() {
     Pixel p = read_pixel();
-    MaterialSample m = direct_material(p.rel_m.xy, mix(p.log2_long, p.log2_short, 0.5));
+    MaterialSample m = direct_material(p.rel_m.xy, mix(p.log2_long, p.log2_short, 0.5) + push.footprint_bias);
     Surface s = Surface(m.albedo, bent_normal(p.ground, m.normal), m.gloss, m.occlusion, m.metalness);
     out_color = vec4(with_ring(p, lit_pixel(p, s)), 1.0);
 }

@@ -9,6 +9,7 @@ struct ResolvePush {
     float ring_radius_m;    // 0: none
     float ring_inner;       // share of the radius where the brush begins to fall off
     uint debug_view;        // DebugView
+    float footprint_bias;   // added to log2 of the footprint by direct shading: supersampling filters what a mip would
 };
 
 LOAM_END_SHARED

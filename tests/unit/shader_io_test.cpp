@@ -81,7 +81,7 @@ TEST(ShaderIo, FrameUniforms) {
 TEST(ShaderIo, ResolvePush) {
     expect_layout("ResolvePush", sizeof(shared::ResolvePush),
                   {AT(ResolvePush, ring_center_rel_m), AT(ResolvePush, ring_radius_m), AT(ResolvePush, ring_inner),
-                   AT(ResolvePush, debug_view)});
+                   AT(ResolvePush, debug_view), AT(ResolvePush, footprint_bias)});
 }
 
 TEST(ShaderIo, VtParams) {
