@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include <glm/vec3.hpp>
 
@@ -14,10 +15,13 @@
 #include "runtime/gpu/frame_ring.h"
 #include "runtime/maps/index_map.h"
 #include "runtime/texture/layer_set.h"
+#include "runtime/texture/page_id.h"
 
 namespace loam {
 
 enum class PageFormat { bc1x3, rgba8 }; // three BC1 textures, or three RGBA8 (the uncompressed comparison, fast on software devices)
+
+inline constexpr uint32_t kUnusedIndirection = 0xfffffffeu; // of expected_indirection
 
 struct VirtualTextureDesc {
     int pages_per_side = 22;      // physical texture: very low 13, low 16, mid 22, high 30, ultra 42
@@ -34,6 +38,7 @@ struct TextureView {
     double pixels_per_radian = 500; // picture height / (2 tan(fov_y / 2)): sizes the live radius
     uint64_t frame = 0;
     float mip_bias = 0;
+    int budget_pages = -1; // overrides VirtualTextureDesc::budget_pages when >= 0
 };
 
 class VirtualTexture {
@@ -42,10 +47,15 @@ class VirtualTexture {
                                                           LayerSet& layers, const VirtualTextureDesc& desc);
     ~VirtualTexture();
 
-    // World rectangles whose texels change (index dirt grown by its filter, and decals).
+    // World rectangles whose texels change: decals, and index dirt grown by one index spacing of level 0 (its filter). What
+    // coarser levels need beyond that is added here.
     void on_dirt(std::span<const WorldRect> rects);
+    // Index dirt as the document tells it: grows it and calls on_dirt.
+    void on_index_dirt(std::span<const WorldRect> rects);
+    // Pages wanted beside the feedback's, until the next call (places the camera will jump to; tests).
+    void request_pages(std::span<const PageId> pages);
 
-    // Requests index pages for what will be composed; call before IndexMap::update.
+    // Takes in feedback, chooses what to compose and requests the index pages for it; call before IndexMap::update.
     void request_inputs(const TextureView& view);
     // Makes last frame's pages usable, applies feedback, composes dirty rectangles first, then missing pages within the
     // budget, and updates indirection and sector table.
@@ -61,8 +71,16 @@ class VirtualTexture {
     [[nodiscard]] gpu::Buffer& sector_table();
     [[nodiscard]] gpu::Buffer& params();        // VtParams of this frame
     [[nodiscard]] const gpu::Sampler& sampler() const;
+    [[nodiscard]] const gpu::Sampler& nearest_sampler() const; // of integer images
+    // For shaders/texture/direct.glsl.
+    [[nodiscard]] gpu::Buffer& direct_params(); // DirectParams of this frame
+    [[nodiscard]] gpu::Buffer& direct_places(); // LayerPlace a layer, relative to the camera's sector
 
-    [[nodiscard]] bool settled() const; // nothing dirty, nothing missing, last feedback all satisfied
+    // Nothing dirty, nothing missing, and a feedback of a frame rendered after the last change wanted nothing that is missing.
+    // It speaks of the views rendered so far: after moving or turning the camera wait until last_feedback_frame() reaches
+    // the TextureView::frame of the new view.
+    [[nodiscard]] bool settled() const;
+    [[nodiscard]] uint64_t last_feedback_frame() const;
     struct Statistics {
         uint32_t resident_pages = 0, capacity_pages = 0, live_sectors = 0, requested_pages = 0, missing_pages = 0;
         uint32_t dirty_pages = 0;
@@ -74,6 +92,11 @@ class VirtualTexture {
     // Tests: every resident page composed again from nothing into scratch and compared with what is in the atlas.
     // Returns the number of pages that differ in any byte (all mips, all three textures).
     Result<uint32_t> count_stale_pages(gpu::FrameRing& ring);
+    // Tests: what the CPU's quad trees say the indirection texture holds, row by row; places outside all images are
+    // kUnusedIndirection.
+    [[nodiscard]] std::vector<uint32_t> expected_indirection() const;
+    [[nodiscard]] const TextureLayout& layout() const;
+    [[nodiscard]] int place_of(const PageId& page) const; // physical page y * pages a side + x, if usable; else -1
 
   private:
     VirtualTexture();

@@ -10,8 +10,25 @@
 // 0xffffffff: nothing resident (only before the first root page).
 //
 // Feedback value (R32): mip : 8 | sector id : 8 | page y : 8 | page x : 8, from the high byte down; page coordinates at
-// that mip. 0xffffffff: no terrain.
-// Source: Call of Duty talk, "Indirection Texture Texel", "Feedback Buffer Value".
+// that mip. Bit 7 of the mip byte: the pixel wants finer texels than the image's mip 0 has (a default-sector pixel
+// that asks for a live sector). 0xffffffff: no terrain.
+//
+// Sector table entry (uint, kSectorTableSide² of them, the camera's sector in the cell (32, 32)):
+// | bits | meaning |
+// | --- | --- |
+// | 0–7 | sector id, 0: the default sector |
+// | 8–19 | x of the image in the indirection texture, texels |
+// | 20–31 | y |
+// The outermost ring is always 0, so that a lookup may clamp instead of comparing.
+//
+// Physical page texture, channels of the three textures (the talk's layout):
+// | texture | R | G | B |
+// | --- | --- | --- | --- |
+// | 0 | albedo r | albedo g | albedo b | square root of the linear value: BC1 spends its bits well, decoding is one multiply
+// | 1 | gloss | normal x | occlusion |
+// | 2 | metalness | normal y | feature (0) |
+// Normal components are (130 + 125 n) / 255: zero is a value that BC1's six bits of green hold exactly.
+// Source: Call of Duty talk, "Indirection Texture Texel", "Feedback Buffer Value", "Physical Textures".
 #ifndef LOAM_TEXTURE_IO_H
 #define LOAM_TEXTURE_IO_H
 #include "shaders/base/shared.h"
@@ -20,22 +37,55 @@ LOAM_BEGIN_SHARED
 #define kPageTexels 256
 #define kPageBorder 4
 #define kPagePayload 248
-#define kSectorTableSide 64   // sectors around the camera that can be live, toroidal window
+#define kSectorTableSide 64   // sectors around the camera that can be live
 #define kNoPage 0xffffffffu
+#define kNoTerrain 0xffffffffu
+#define kFeedbackWidth 240
+#define kFeedbackHeight 136
+#define kFeedbackFinerBit 0x80000000u
+#define kIndexPageBorder 4    // of index map pages (maps/index_map.h)
+#define kIndexPageTexels 136
+#define kMaxIndexLevels 16
 
 // Everything that a lookup needs; a storage buffer, one a frame.
 struct VtParams {
     ivec2 camera_sector;      // the sector the camera is in
     vec2 camera_offset_m;     // and where in it, [0, 64)
-    ivec2 table_origin;       // sector of the table's window corner; sectors outside use the default sector
-    int default_log2_width;   // the default sector is 64 m << this wide: depth of its finest pages
+    ivec2 table_origin;       // sector of the table's first cell: camera_sector - 32
+    int default_log2_width;   // of the default sector's image, in pages
     int sector_log2_width;    // of live sectors' images, in pages
     float inv_atlas_pages;    // 1 / pages a side of the physical texture
     float mip_bias;           // added to the wanted mip; positive is blurrier
     uint frame;
     uint flags;
-    // Table entry of a sector, follows in the sector table buffer: uint = id | x << 8 | y << 20 … see vt_sample.glsl
+    float default_pages_per_sector; // finest pages of the default image a sector: 1, or less for maps above 16,384 m
+    float sector_pages;       // finest pages a side of a live sector's image
+    float default_log2_texel; // log2 of metres a finest texel
+    float sector_log2_texel;
+    float anisotropy;         // wanted mip = mix(long axis, short axis, this)
+    float unused;
 };
+
+// One dirty square of the indirection texture. The commands of a frame are disjoint: their order does not matter.
+struct IndirectionFill {
+    int x, y;   // texels
+    int size;   // square side, texels
+    uint value; // indirection texel
+};
+
+// The lookup of any place in the index map, for shading without the cache (direct.glsl).
+struct DirectParams {
+    ivec2 camera_sector;
+    vec2 camera_offset_m;
+    float texels_per_m;     // of level 0
+    int texels_per_sector;  // of level 0
+    int level_count;
+    uint last_layer;        // larger indices in the map count as this one
+    ivec4 levels[kMaxIndexLevels]; // x: first entry in the page table, y: pages x, z: pages y, w: unused
+};
+
+LOAM_INLINE float page_encode_normal(float n) { return (130.0f + 125.0f * n) / 255.0f; }
+LOAM_INLINE float page_decode_normal(float v) { return v * (255.0f / 125.0f) - 130.0f / 125.0f; }
 
 LOAM_END_SHARED
 #endif

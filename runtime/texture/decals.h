@@ -1,0 +1,38 @@
+// Which decals a page rectangle gets, as instances for the decal pass, in operator order.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <glm/vec2.hpp>
+
+#include "runtime/base/rect.h"
+#include "runtime/texture/page_id.h"
+#include "shaders/texture/decal_io.h"
+
+namespace loam {
+
+class Document;
+
+enum class DecalKind : uint8_t { crater, footprint };
+
+// Consecutive instances of one kind: one draw. Order between pages does not matter, order within one does.
+struct DecalRun {
+    DecalKind kind;
+    uint32_t first = 0, count = 0;
+};
+
+struct DecalList {
+    std::vector<shared::DecalInstance> instances;
+    std::vector<DecalRun> runs;
+};
+
+// Appends the decals over `rect` (texels of the page with border); scratch_min is where rect's corner lies in scratch. The
+// caller holds the document's ReadLock.
+void add_decals(const Document& document, const TextureLayout& layout, const PageId& page, const TexelRect& rect,
+                glm::ivec2 scratch_min, DecalList& list);
+
+// The texels of a page whose centres lie in a world rectangle, grown by one; not clipped.
+[[nodiscard]] TexelRect page_texels(const TextureLayout& layout, const PageId& page, const WorldRect& world);
+
+} // namespace loam

@@ -1,0 +1,259 @@
+#include "runtime/texture/virtual_texture.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+#include "runtime/base/check.h"
+#include "runtime/document/document.h"
+#include "runtime/texture/virtual_texture_impl.h"
+
+namespace loam {
+
+namespace {
+
+using gpu::Access;
+constexpr float kAnisotropy = 0.5f; // between the long axis (0: blurry) and the short one (1: aliased), as the talk's mipBias
+constexpr uint32_t kFeedbackValues = kFeedbackWidth * kFeedbackHeight;
+
+template <typename T>
+Status assign(T& target, Result<T> made) {
+    if (!made.ok()) return made.error();
+    target = std::move(*made);
+    return {};
+}
+
+Result<gpu::Buffer> storage_buffer(gpu::Device& device, const char* name, uint64_t bytes) {
+    return gpu::Buffer::create(device, {.name = name, .size_bytes = bytes, .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+}
+
+} // namespace
+
+VirtualTexture::VirtualTexture() = default;
+VirtualTexture::~VirtualTexture() = default;
+
+Status VirtualTexture::Impl::make_resources() {
+    Impl& t = *this;
+    const uint32_t side = uint32_t(t.desc.pages_per_side);
+    LOAM_TRY(assign(t.atlas, make_page_atlas(t.device, t.desc.format, side, side)));
+    LOAM_TRY(assign(t.indirection,
+                    gpu::Image::create(t.device, {.name = "indirection",
+                                                  .format = VK_FORMAT_R32_UINT,
+                                                  .width = uint32_t(t.desc.indirection_size),
+                                                  .height = uint32_t(t.desc.indirection_size),
+                                                  .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                           VK_IMAGE_USAGE_TRANSFER_SRC_BIT})));
+    LOAM_TRY(assign(t.sector_table, storage_buffer(t.device, "sector table", kSectorTableSide * kSectorTableSide * 4)));
+    LOAM_TRY(assign(t.params, storage_buffer(t.device, "texture params", sizeof(shared::VtParams))));
+    LOAM_TRY(assign(t.direct_params, storage_buffer(t.device, "direct params", sizeof(shared::DirectParams))));
+    LOAM_TRY(assign(t.direct_places,
+                    storage_buffer(t.device, "direct places", size_t(t.layers.count) * sizeof(shared::LayerPlace))));
+    LOAM_TRY(assign(t.feedback, storage_buffer(t.device, "feedback", kFeedbackValues * 4)));
+    LOAM_TRY(assign(t.linear, gpu::Sampler::create(t.device, {})));
+    LOAM_TRY(assign(t.nearest, gpu::Sampler::create(t.device, {.filter = VK_FILTER_NEAREST})));
+    LOAM_TRY(assign(t.fill_pipeline, gpu::Pipeline::create(t.device, gpu::ComputeDesc{
+                                                                         .name = "indirection",
+                                                                         .shader = "texture/indirection.comp",
+                                                                         .bindings = {gpu::storage_image(0), gpu::storage_buffer(1)},
+                                                                         .constants = {}})));
+    return assign(t.feedback_pipeline,
+                  gpu::Pipeline::create(t.device, gpu::ComputeDesc{.name = "feedback",
+                                                                   .shader = "texture/feedback.comp",
+                                                                   .bindings = {gpu::storage_buffer(0), gpu::storage_buffer(1),
+                                                                                gpu::sampled_image(2), gpu::sampled_image(3),
+                                                                                gpu::storage_buffer(4), gpu::storage_buffer(5)},
+                                                                   .constants = {}}));
+}
+
+Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& device, const Document& document, IndexMap& index,
+                                                               LayerSet& layers, const VirtualTextureDesc& asked) {
+    VirtualTextureDesc desc = asked;
+    if (desc.pages_per_side < 2 || desc.pages_per_side > 64)
+        return error("the physical texture is 2 to 64 pages wide, not {}", desc.pages_per_side);
+    if (!std::has_single_bit(uint32_t(desc.indirection_size)) || desc.indirection_size > 4096)
+        return error("the indirection texture's side is a power of two up to 4096, not {}", desc.indirection_size);
+    if (desc.format == PageFormat::bc1x3 && !device.caps().bc) desc.format = PageFormat::rgba8;
+    const TextureLayout layout = texture_layout(document.bounds(), desc.sector_log2_width);
+    const int log2_size = std::countr_zero(uint32_t(desc.indirection_size));
+    if (log2_size < layout.default_log2_width || log2_size < desc.sector_log2_width)
+        return error("an indirection texture of {} texels cannot hold images of {} and {} pages", desc.indirection_size,
+                     1 << layout.default_log2_width, 1 << desc.sector_log2_width);
+    std::unique_ptr<VirtualTexture> texture(new VirtualTexture);
+    texture->impl_ = std::make_unique<Impl>(
+        device, document, index, layers, desc, layout,
+        SectorSetDesc{.layout = layout, .indirection_log2_size = log2_size, .max_live = desc.max_live_sectors, .bounds = document.bounds()});
+    LOAM_TRY(texture->impl_->make_resources());
+    auto composer = Composer::create(device, document, index, layers, layout, desc.format, desc.decals);
+    if (!composer.ok()) return composer.error();
+    texture->impl_->composer = std::move(*composer);
+    return texture;
+}
+
+void VirtualTexture::Impl::cmd_indirection(gpu::FrameRing& ring, gpu::Commands& commands) {
+    std::vector<shared::IndirectionFill> fills;
+    sectors.default_tree().take_fills({0, 0}, fills);
+    for (LiveSector& sector : sectors.live()) sector.tree->take_fills(sector.origin, fills);
+    if (fills.empty()) return;
+    changed_frame = frame;
+    // One workgroup a fill: big squares are cut so that none is much longer than the others.
+    constexpr int kLargest = 32;
+    std::vector<shared::IndirectionFill> cut;
+    for (const auto& f : fills)
+        for (int y = 0; y < f.size; y += kLargest)
+            for (int x = 0; x < f.size; x += kLargest) cut.push_back({f.x + x, f.y + y, std::min(f.size, kLargest), f.value});
+    const uint64_t bytes = cut.size() * sizeof(shared::IndirectionFill);
+    const gpu::UploadSlice slice = ring.upload(bytes);
+    std::memcpy(slice.data, cut.data(), bytes);
+    auto pass = commands.pass("texture indirection", {{indirection, Access::compute_storage}});
+    commands.bind(fill_pipeline, {{0, indirection.mip_view(0)}, {1, *slice.buffer, slice.offset, bytes}});
+    constexpr size_t kMaxGroups = 65535;
+    LOAM_CHECK(cut.size() <= kMaxGroups, "more indirection squares than one dispatch takes");
+    commands.dispatch(uint32_t(cut.size()));
+}
+
+void VirtualTexture::Impl::cmd_parameters(gpu::Commands& commands, const TextureView& view) {
+    const SectorPosition camera = sector_position({view.camera_m.x, view.camera_m.y});
+    const auto log2_texel = [&](const PageId& page) { return float(std::log2(layout.texel_m(page))); };
+    shared::VtParams p{};
+    p.camera_sector = camera.sector;
+    p.camera_offset_m = camera.offset_m;
+    p.table_origin = camera.sector - kSectorTableSide / 2;
+    p.default_log2_width = layout.default_log2_width;
+    p.sector_log2_width = layout.sector_log2_width;
+    p.inv_atlas_pages = 1.0f / float(desc.pages_per_side);
+    p.mip_bias = view.mip_bias;
+    p.frame = uint32_t(frame);
+    p.default_pages_per_sector = std::ldexp(1.0f, -layout.default_log2_page);
+    p.sector_pages = std::ldexp(1.0f, layout.sector_log2_width);
+    p.default_log2_texel = log2_texel({{}, layout.default_log2_width, 0, 0});
+    p.sector_log2_texel = log2_texel({{true, 0, 0}, layout.sector_log2_width, 0, 0});
+    p.anisotropy = kAnisotropy;
+
+    const VirtualMap& map = index.map();
+    shared::DirectParams d{};
+    d.camera_sector = camera.sector;
+    d.camera_offset_m = camera.offset_m;
+    d.texels_per_m = float(1.0 / map.spacing_m(0));
+    d.texels_per_sector = int(std::lround(kSectorSize_m / map.spacing_m(0)));
+    d.level_count = std::min(map.desc().level_count, kMaxIndexLevels);
+    d.last_layer = uint32_t(layers.count - 1);
+    for (int level = 0; level < d.level_count; ++level)
+        d.levels[level] = {int(map.level_offset(level)), map.pages_x(level), map.pages_y(level), 0};
+    std::vector<shared::LayerPlace> places;
+    for (const double tile_m : layers.tiles_m)
+        places.push_back(Composer::layer_place(camera.sector.x * kSectorSize_m, camera.sector.y * kSectorSize_m, 1.0, 1.0, tile_m,
+                                               layers.size_texels));
+
+    commands.use({{params, Access::copy_target}, {direct_params, Access::copy_target}, {direct_places, Access::copy_target}});
+    vkCmdUpdateBuffer(commands.handle(), params.handle(), 0, sizeof p, &p);
+    vkCmdUpdateBuffer(commands.handle(), direct_params.handle(), 0, sizeof d, &d);
+    vkCmdUpdateBuffer(commands.handle(), direct_places.handle(), 0, places.size() * sizeof places[0], places.data());
+    if (!table_changed && camera.sector == table_sector) return;
+    if (table_changed) changed_frame = frame;
+    table_changed = false;
+    table_sector = camera.sector;
+    std::vector<uint32_t> table(size_t(kSectorTableSide) * kSectorTableSide);
+    sectors.write_table(camera.sector, table);
+    commands.use({{sector_table, Access::copy_target}});
+    vkCmdUpdateBuffer(commands.handle(), sector_table.handle(), 0, table.size() * sizeof table[0], table.data());
+}
+
+Status VirtualTexture::update(gpu::FrameRing& ring, gpu::Commands& commands, const TextureView& view) {
+    Impl& t = *impl_;
+    if (!t.advanced) t.advance(view);
+    t.advanced = false;
+    const std::vector<ComposeJob> jobs = t.choose_jobs(view);
+    if (!jobs.empty()) t.changed_frame = t.frame;
+    LOAM_TRY(t.composer->cmd_compose(ring, commands, jobs, t.atlas));
+    t.cmd_indirection(ring, commands);
+    t.cmd_parameters(commands, view);
+    // From the first frame on everything can be sampled, also before anything was written.
+    commands.use({{t.atlas[0], Access::fragment_sampled},
+                  {t.atlas[1], Access::fragment_sampled},
+                  {t.atlas[2], Access::fragment_sampled},
+                  {t.indirection, Access::fragment_sampled}});
+    return {};
+}
+
+Status VirtualTexture::record_feedback(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& depth, gpu::Image& gbuffer,
+                                       const gpu::Buffer& frame_uniforms, uint64_t uniforms_offset) {
+    Impl& t = *impl_;
+    {
+        auto pass = commands.pass("texture feedback", {{depth, Access::depth_sampled},
+                                                       {gbuffer, Access::compute_sampled},
+                                                       {t.params, Access::compute_sampled},
+                                                       {t.sector_table, Access::compute_sampled},
+                                                       {t.feedback, Access::compute_storage}});
+        const VkImageView depth_view = depth.depth_view() ? depth.depth_view() : depth.view();
+        commands.bind(t.feedback_pipeline, {{0, t.params},
+                                            {1, t.sector_table},
+                                            {2, depth_view, t.nearest, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL},
+                                            {3, gbuffer.view(), t.nearest},
+                                            {4, frame_uniforms, uniforms_offset, VK_WHOLE_SIZE},
+                                            {5, t.feedback}});
+        commands.dispatch(kFeedbackWidth / 8, kFeedbackHeight / 8);
+    }
+    ring.read_back(commands, t.feedback, 0, kFeedbackValues * 4,
+                   [inbox = t.inbox, images = t.sectors.images(), frame = t.frame,
+                    view_frame = t.view_frame](std::span<const std::byte> bytes) {
+                       inbox->values.resize(bytes.size() / 4);
+                       std::memcpy(inbox->values.data(), bytes.data(), bytes.size());
+                       inbox->images = images;
+                       inbox->frame = frame;
+                       inbox->view_frame = view_frame;
+                       inbox->fresh = true;
+                   });
+    return {};
+}
+
+gpu::Image& VirtualTexture::atlas(int which) { return impl_->atlas[size_t(which)]; }
+gpu::Image& VirtualTexture::indirection() { return impl_->indirection; }
+gpu::Buffer& VirtualTexture::sector_table() { return impl_->sector_table; }
+gpu::Buffer& VirtualTexture::params() { return impl_->params; }
+gpu::Buffer& VirtualTexture::direct_params() { return impl_->direct_params; }
+gpu::Buffer& VirtualTexture::direct_places() { return impl_->direct_places; }
+const gpu::Sampler& VirtualTexture::sampler() const { return impl_->linear; }
+const gpu::Sampler& VirtualTexture::nearest_sampler() const { return impl_->nearest; }
+const TextureLayout& VirtualTexture::layout() const { return impl_->layout; }
+uint64_t VirtualTexture::last_feedback_frame() const { return impl_->feedback_view_frame; }
+
+bool VirtualTexture::settled() const {
+    const Impl& t = *impl_;
+    return t.frame > 0 && t.missing.empty() && !t.has_dirt() && t.feedback_frame >= t.changed_frame && !t.inbox->fresh;
+}
+
+int VirtualTexture::place_of(const PageId& page) const {
+    const int place = impl_->pool.find(page);
+    return place >= 0 && impl_->pool.place(place).state == PagePool::State::usable ? place : -1;
+}
+
+VirtualTexture::Statistics VirtualTexture::statistics() const {
+    const Impl& t = *impl_;
+    Statistics s = t.counted;
+    s.resident_pages = uint32_t(t.pool.used_count());
+    s.capacity_pages = uint32_t(t.pool.place_count());
+    s.live_sectors = uint32_t(t.sectors.live().size());
+    s.requested_pages = uint32_t(t.requests.size());
+    s.missing_pages = uint32_t(t.missing.size());
+    s.dirty_pages = uint32_t(t.dirty_order.size());
+    s.gpu_bytes = t.indirection.bytes() + t.composer->gpu_bytes() + t.sector_table.size_bytes() + t.feedback.size_bytes();
+    for (const gpu::Image& image : t.atlas) s.gpu_bytes += image.bytes();
+    return s;
+}
+
+std::vector<uint32_t> VirtualTexture::expected_indirection() const {
+    const Impl& t = *impl_;
+    const int size = t.desc.indirection_size;
+    std::vector<uint32_t> texels(size_t(size) * size_t(size), kUnusedIndirection);
+    const auto write = [&](const PageTree& tree, glm::ivec2 origin) {
+        const int side = 1 << tree.log2_width();
+        for (int y = 0; y < side; ++y)
+            for (int x = 0; x < side; ++x) texels[size_t(origin.y + y) * size_t(size) + size_t(origin.x + x)] = tree.cell(x, y);
+    };
+    write(t.sectors.default_tree(), {0, 0});
+    for (const LiveSector& sector : t.sectors.live()) write(*sector.tree, sector.origin);
+    return texels;
+}
+
+} // namespace loam

@@ -1,0 +1,94 @@
+// The invariant that everything hangs on, looked at directly: a resident page equals the page composed from nothing.
+#include <algorithm>
+#include <cstring>
+
+#include "runtime/gpu/format.h"
+#include "runtime/texture/virtual_texture_impl.h"
+
+namespace loam {
+
+namespace {
+
+using gpu::Access;
+constexpr uint32_t kPagesX = 4, kPagesY = 2, kPagesAtOnce = kPagesX * kPagesY;
+constexpr int kIndexPatience = 16; // frames to wait for the index pages of a group
+
+// Both mips of a page of one texture, copied to a buffer; returns the bytes written.
+uint64_t cmd_copy_page(gpu::Commands& commands, const gpu::Image& image, glm::ivec2 page, gpu::Buffer& out, uint64_t offset) {
+    VkBufferImageCopy regions[2] = {};
+    uint64_t bytes = 0;
+    for (uint32_t mip = 0; mip < 2; ++mip) {
+        const uint32_t side = kPageTexels >> mip;
+        regions[mip].bufferOffset = offset + bytes;
+        regions[mip].imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1};
+        regions[mip].imageOffset = {page.x * int(side), page.y * int(side), 0};
+        regions[mip].imageExtent = {side, side, 1};
+        bytes += gpu::image_bytes(image.format(), side, side);
+    }
+    vkCmdCopyImageToBuffer(commands.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, out.handle(), 2, regions);
+    return bytes;
+}
+
+} // namespace
+
+Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
+    Impl& t = *impl_;
+    auto made = make_page_atlas(t.device, t.desc.format, kPagesX, kPagesY);
+    if (!made.ok()) return made.error();
+    PageAtlas fresh = std::move(*made);
+    const VkFormat format = fresh[0].format();
+    const uint64_t page_bytes = 3 * (gpu::image_bytes(format, kPageTexels, kPageTexels) +
+                                     gpu::image_bytes(format, kPageTexels / 2, kPageTexels / 2));
+    auto buffer = gpu::Buffer::create(t.device, {.name = "page comparison", .size_bytes = 2 * page_bytes * kPagesAtOnce});
+    if (!buffer.ok()) return buffer.error();
+
+    std::vector<int> places;
+    for (int i = 0; i < t.pool.place_count(); ++i)
+        if (t.pool.place(i).state != PagePool::State::free) places.push_back(i);
+    uint32_t stale = 0;
+    uint64_t index_frame = t.view_frame;
+    for (size_t first = 0; first < places.size(); first += kPagesAtOnce) {
+        const size_t count = std::min<size_t>(kPagesAtOnce, places.size() - first);
+        bool compared = false;
+        for (int attempt = 0; attempt < kIndexPatience && !compared; ++attempt) {
+            auto frame = ring.begin();
+            if (!frame.ok()) return frame.error();
+            gpu::Commands& commands = (*frame)->commands;
+            for (size_t i = 0; i < count; ++i) t.index.request(t.index_page(t.pool.place(places[first + i]).page), 1.0e9f);
+            LOAM_TRY(t.index.update(ring, commands, ++index_frame, int(kPagesAtOnce)));
+            std::vector<ComposeJob> jobs;
+            for (size_t i = 0; i < count; ++i) {
+                ComposeJob job = t.make_job(places[first + i], {0, 0, kPageTexels, kPageTexels});
+                job.target = {int(i % kPagesX), int(i / kPagesX)};
+                if (job.index_slot >= 0) jobs.push_back(job);
+            }
+            if (jobs.size() == count) {
+                LOAM_TRY(t.composer->cmd_compose(ring, commands, jobs, fresh));
+                commands.use({{fresh[0], Access::copy_source},
+                              {fresh[1], Access::copy_source},
+                              {fresh[2], Access::copy_source},
+                              {t.atlas[0], Access::copy_source},
+                              {t.atlas[1], Access::copy_source},
+                              {t.atlas[2], Access::copy_source},
+                              {*buffer, Access::copy_target}});
+                uint64_t at = 0;
+                for (size_t i = 0; i < count; ++i)
+                    for (const bool resident : {true, false}) {
+                        const glm::ivec2 page = resident ? t.make_job(places[first + i], {}).target : jobs[i].target;
+                        for (size_t which = 0; which < 3; ++which)
+                            at += cmd_copy_page(commands, resident ? t.atlas[which] : fresh[which], page, *buffer, at);
+                    }
+                ring.read_back(commands, *buffer, 0, at, [&stale, count, page_bytes](std::span<const std::byte> bytes) {
+                    for (size_t i = 0; i < count; ++i)
+                        stale += std::memcmp(&bytes[2 * i * page_bytes], &bytes[(2 * i + 1) * page_bytes], page_bytes) != 0;
+                });
+                compared = true;
+            }
+            LOAM_TRY(ring.finish(**frame));
+        }
+        if (!compared) return error("the index pages of {} texture pages did not become resident", count);
+    }
+    return stale;
+}
+
+} // namespace loam

@@ -1,0 +1,69 @@
+// What craters and footprints do to the ground's texture: colours and weights to blend over what is there, in the physical
+// texture's channels and encodings (texture_io.h). A function of the position relative to the decal and the texel size only.
+#ifndef LOAM_TEXTURE_DECAL_SHADE_GLSL
+#define LOAM_TEXTURE_DECAL_SHADE_GLSL
+#include "shaders/document/crater_math.h"
+#include "shaders/document/footprint_math.h"
+#include "shaders/texture/decal_io.h"
+#include "shaders/texture/texture_io.h"
+
+struct DecalShade {
+    vec4 albedo;  // square roots of linear values, weight
+    vec4 surface; // gloss, normal x, occlusion; weight
+    vec4 metal;   // metalness, normal y, feature; weight
+};
+
+const vec3 kBurntRoot = vec3(0.17, 0.155, 0.14); // soot: about 2.5 % linear
+const vec3 kDustRoot = vec3(0.60, 0.565, 0.51);  // pulverised rock: about a third
+
+// offset_m: from the crater's centre.
+DecalShade crater_shade(DecalInstance decal, vec2 offset_m) {
+    precise vec2 local = offset_m / decal.shape.x;
+    precise float scorch = crater_scorch(local, decal.seed);
+    precise float rays = crater_rays(local, decal.seed);
+    float cover = max(0.85 * scorch, 0.6 * rays) * decal.fade;
+    // Rubble: bumps of a fortieth of the radius, gone where they are smaller than two texels.
+    float bump_m = max(decal.shape.x * (1.0 / 40.0), 0.02);
+    float detail = clamp(bump_m / decal.texel_m - 1.0, 0.0, 1.0);
+    vec2 p = offset_m / bump_m;
+    precise float h = noise_value(p, decal.seed + 51u);
+    precise float hx = noise_value(p + vec2(0.25, 0.0), decal.seed + 51u);
+    precise float hy = noise_value(p + vec2(0.0, 0.25), decal.seed + 51u);
+    vec2 slope = vec2(hx - h, hy - h) * detail;
+    vec2 normal = -slope / sqrt(1.0 + dot(slope, slope));
+
+    DecalShade shade;
+    shade.albedo = vec4(mix(kDustRoot, kBurntRoot, clamp(scorch * 1.2, 0.0, 1.0)) * (1.0 + 0.12 * h * detail), cover);
+    shade.surface = vec4(0.12, page_encode_normal(normal.x), 1.0 - 0.25 * detail * max(-h, 0.0), cover);
+    shade.metal = vec4(0.0, page_encode_normal(normal.y), 0.0, cover);
+    return shade;
+}
+
+// offset_m: from the print's middle.
+DecalShade print_shade(DecalInstance decal, vec2 offset_m) {
+    float length_m = decal.shape.x, depth_m = decal.shape.y;
+    vec2 heading = decal.shape.zw; // sine, cosine
+    int foot = int(decal.foot);
+    precise vec2 local = footprint_local(offset_m / length_m, heading);
+    // Slopes over a texel, at least over a hundredth of the print: what is finer cannot be shown.
+    float reach = max(decal.texel_m / length_m, 0.01) * 0.5;
+    float east = footprint_height(local + vec2(reach, 0.0), foot, decal.seed);
+    float west = footprint_height(local - vec2(reach, 0.0), foot, decal.seed);
+    float north = footprint_height(local + vec2(0.0, reach), foot, decal.seed);
+    float south = footprint_height(local - vec2(0.0, reach), foot, decal.seed);
+    precise vec2 slope_local = vec2(east - west, north - south) * (depth_m / length_m / (2.0 * reach));
+    vec2 slope = slope_local.x * vec2(heading.y, -heading.x) + slope_local.y * heading;
+    vec2 normal = -slope / sqrt(1.0 + dot(slope, slope));
+    float r = length(local);
+    precise float sole = footprint_sole(local, foot);
+    float inside = (1.0 - noise_ramp(0.62, kFootprintReach, r)) * decal.fade;
+    float pressed = footprint_shade(local, foot);
+    float around = noise_ramp(-kFootprintRim, 0.0, sole) * inside;
+
+    DecalShade shade;
+    shade.albedo = vec4(vec3(0.2, 0.18, 0.16), 0.5 * pressed * inside);
+    shade.surface = vec4(0.1, page_encode_normal(normal.x), 1.0 - 0.35 * pressed, 0.9 * around);
+    shade.metal = vec4(0.0, page_encode_normal(normal.y), 0.0, 0.9 * around);
+    return shade;
+}
+#endif

@@ -1,0 +1,76 @@
+// The material under any place, without the page cache: index map and layers per pixel. This is what the cached picture is
+// measured against. Decals are not part of it yet.
+//
+// Slots, counted from DIRECT_FIRST_SLOT, which the includer may define (0):
+// | slot | what | C++ |
+// | --- | --- | --- |
+// | +0 | DirectParams, storage buffer | VirtualTexture::direct_params() |
+// | +1 | LayerPlace a layer, relative to the camera's sector, storage buffer | VirtualTexture::direct_places() |
+// | +2 | index page table, storage buffer, uint an entry | IndexMap::page_table() |
+// | +3 | index pages, usampler2DArray | IndexMap::indices(), VirtualTexture::nearest_sampler() |
+// | +4 | tint pages, sampler2DArray | IndexMap::tints(), VirtualTexture::nearest_sampler() |
+// | +5 | layers' albedo+reveal, sampler2DArray | LayerSet::albedo_reveal, LayerSet::sampler |
+// | +6 | layers' normal+gloss+occlusion | LayerSet::normal_gloss_occlusion, LayerSet::sampler |
+// | +7 | layers' metalness | LayerSet::metalness, LayerSet::sampler |
+// Specialisation constant 21: 1 where a layer has metal (LayerSet::has_metal).
+//
+//     MaterialSample m = direct_material(rel.xy, log2_footprint); // camera-relative metres; log2 of metres a sample
+#ifndef LOAM_TEXTURE_DIRECT_GLSL
+#define LOAM_TEXTURE_DIRECT_GLSL
+#include "shaders/texture/compose_io.h"
+#include "shaders/texture/texture_io.h"
+
+#ifndef DIRECT_FIRST_SLOT
+#define DIRECT_FIRST_SLOT 0
+#endif
+layout(constant_id = 21) const bool kHasMetal = false;
+const bool kOneLayer = false;
+layout(binding = DIRECT_FIRST_SLOT + 0, scalar) readonly buffer DirectParamsBuffer { DirectParams direct; };
+layout(binding = DIRECT_FIRST_SLOT + 1, scalar) readonly buffer DirectPlaces { LayerPlace direct_places[]; };
+layout(binding = DIRECT_FIRST_SLOT + 2, scalar) readonly buffer DirectTable { uint direct_table[]; };
+layout(binding = DIRECT_FIRST_SLOT + 3) uniform usampler2DArray direct_indices;
+layout(binding = DIRECT_FIRST_SLOT + 4) uniform sampler2DArray direct_tints;
+layout(binding = DIRECT_FIRST_SLOT + 5) uniform sampler2DArray direct_albedo;
+layout(binding = DIRECT_FIRST_SLOT + 6) uniform sampler2DArray direct_normal;
+layout(binding = DIRECT_FIRST_SLOT + 7) uniform sampler2DArray direct_metal;
+
+#define MATERIAL_ALBEDO direct_albedo
+#define MATERIAL_NORMAL direct_normal
+#define MATERIAL_METAL direct_metal
+#define MATERIAL_PLACE(layer) direct_places[layer]
+#include "shaders/texture/material.glsl"
+
+MaterialSample direct_material(vec2 rel_m, float log2_footprint) {
+    vec2 at_m = direct.camera_offset_m + rel_m; // from the corner of the camera's sector
+    vec2 sector = floor(at_m * (1.0 / 64.0));
+    vec2 in_sector = (at_m - sector * 64.0) * direct.texels_per_m;
+    vec2 whole = floor(in_sector);
+    vec2 rest = in_sector - whole;
+    // Whole texels in integers: a 16 km map at 0.25 m is more than a float's fraction holds.
+    ivec2 texel = (direct.camera_sector + ivec2(sector)) * direct.texels_per_sector + ivec2(whole);
+    // The level a page of this texel size is composed from: two texture texels an index texel, or level 0.
+    int level = clamp(int(floor(log2_footprint + 1.0 + log2(direct.texels_per_m))), 0, direct.level_count - 1);
+    uint slot = 0xffffu;
+    for (; level < direct.level_count; ++level) {
+        ivec4 info = direct.levels[level];
+        ivec2 page = clamp(texel >> (level + 7), ivec2(0), info.yz - 1);
+        slot = direct_table[info.x + page.y * info.y + page.x];
+        if (slot != 0xffffu) break;
+    }
+    level = min(level, direct.level_count - 1);
+    ivec2 coarse = texel >> level;
+    vec2 fraction = (vec2(texel - (coarse << level)) + rest) * (1.0 / float(1 << level));
+    ivec2 page = clamp(coarse >> 7, ivec2(0), direct.levels[level].yz - 1);
+    ivec2 local = clamp(coarse - (page << 7), ivec2(-kIndexPageBorder), ivec2(130)) + kIndexPageBorder;
+    ivec3 base = ivec3(local, int(slot == 0xffffu ? 0u : slot));
+    uvec4 layers = uvec4(texelFetch(direct_indices, base, 0).r, texelFetch(direct_indices, base + ivec3(1, 0, 0), 0).r,
+                         texelFetch(direct_indices, base + ivec3(0, 1, 0), 0).r,
+                         texelFetch(direct_indices, base + ivec3(1, 1, 0), 0).r);
+    layers = min(layers, uvec4(direct.last_layer));
+    vec3 t0 = texelFetch(direct_tints, base, 0).rgb;
+    vec3 t1 = texelFetch(direct_tints, base + ivec3(1, 0, 0), 0).rgb;
+    vec3 t2 = texelFetch(direct_tints, base + ivec3(0, 1, 0), 0).rgb;
+    vec3 t3 = texelFetch(direct_tints, base + ivec3(1, 1, 0), 0).rgb;
+    return evaluate_material(layers, t0, t1, t2, t3, fraction, at_m, log2_footprint);
+}
+#endif

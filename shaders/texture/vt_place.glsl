@@ -1,0 +1,47 @@
+// Where a terrain position is in its virtual image, and which mip its footprint wants: what sampling and feedback share.
+// Slots: VT_FIRST_SLOT + 0 VtParams (VirtualTexture::params()), + 1 sector table (VirtualTexture::sector_table()).
+#ifndef LOAM_TEXTURE_VT_PLACE_GLSL
+#define LOAM_TEXTURE_VT_PLACE_GLSL
+#include "shaders/texture/texture_io.h"
+
+#ifndef VT_FIRST_SLOT
+#define VT_FIRST_SLOT 0
+#endif
+layout(binding = VT_FIRST_SLOT + 0, scalar) readonly buffer VtParamsBuffer { VtParams vt; };
+layout(binding = VT_FIRST_SLOT + 1, scalar) readonly buffer VtTable { uint vt_table[]; };
+
+struct VtPlace {
+    ivec2 origin;   // of the image in the indirection texture
+    vec2 pages;     // position in the image, finest pages
+    ivec2 cell;     // the finest page, inside the image
+    float wanted;   // mip, not limited below, at most the image's coarsest
+    uint id;        // sector id
+};
+
+VtPlace vt_place(ivec2 sector_delta, vec2 offset_m, float log2_long, float log2_short) {
+    VtPlace place;
+    ivec2 slot = clamp(sector_delta + kSectorTableSide / 2, ivec2(0), ivec2(kSectorTableSide - 1));
+    uint entry = vt_table[slot.y * kSectorTableSide + slot.x];
+    bool live = entry != 0u;
+    place.id = entry & 0xffu;
+    place.origin = ivec2(entry >> 8u & 0xfffu, entry >> 20u);
+    vec2 in_sector = offset_m * (1.0 / 64.0);
+    vec2 default_pages = (vec2(vt.camera_sector + sector_delta) + in_sector) * vt.default_pages_per_sector;
+    place.pages = live ? in_sector * vt.sector_pages : default_pages;
+    int log2_width = live ? vt.sector_log2_width : vt.default_log2_width;
+    place.cell = clamp(ivec2(floor(place.pages)), ivec2(0), ivec2((1 << log2_width) - 1));
+    float wanted = mix(log2_long, log2_short, vt.anisotropy) + vt.mip_bias -
+                   (live ? vt.sector_log2_texel : vt.default_log2_texel);
+    float coarsest = float(log2_width);
+    place.wanted = wanted < coarsest ? wanted : coarsest; // also where the footprint is not a number
+    return place;
+}
+
+// Position relative to the camera to sector and offset. rel_m: metres from the camera.
+void vt_split(vec2 rel_m, out ivec2 sector_delta, out vec2 offset_m) {
+    vec2 at = vt.camera_offset_m + rel_m;
+    vec2 sector = floor(at * (1.0 / 64.0));
+    sector_delta = ivec2(sector);
+    offset_m = at - sector * 64.0;
+}
+#endif
