@@ -70,12 +70,12 @@ void read_base(const Document& document, int mip, glm::ivec2 first, glm::ivec2 s
     for (size_t i = 0; i < count; ++i) out_m[i] = base[i] * kHeightStep_m;
 }
 
-// Composed heights around a rectangle of a page: what normals and ambient occlusion look at.
-struct Window {
-    int margin = 0, width = 0; // texels beyond the rectangle; texels a row
-    double spacing_m = 1;
+// Composed heights around a texel: what its normal and ambient occlusion look at.
+struct Neighbourhood {
     const double* heights_m = nullptr;
     const float* floats_m = nullptr;
+    int width = 0; // texels a row
+    double spacing_m = 1;
 };
 
 struct Direction {
@@ -86,13 +86,11 @@ constexpr float kDiagonal = 1.41421356f;
 constexpr Direction kDirections[] = {{1, 0, 1},  {1, 1, kDiagonal},   {0, 1, 1},  {-1, 1, kDiagonal},
                                      {-1, 0, 1}, {-1, -1, kDiagonal}, {0, -1, 1}, {1, -1, kDiagonal}};
 
-// One row of normals and ambient occlusion; x0, x1 and y in texels of the page. Loops run over the row so that they
-// vectorise; every texel's expression is the same wherever the row begins.
-void compose_normal_row(const Window& window, int x0, int x1, int row_in_rect, uint16_t* out) {
-    const int count = x1 - x0;
-    const ptrdiff_t origin = ptrdiff_t(row_in_rect + window.margin) * window.width + window.margin;
-    const double* h = window.heights_m + origin;
-    const float* f = window.floats_m + origin;
+// `count` texels of a row from the neighbourhood's. Loops run over the row so that they vectorise; every texel's
+// expression is the same wherever the row begins.
+void derive_row(const Neighbourhood& window, int count, uint16_t* out) {
+    const double* h = window.heights_m;
+    const float* f = window.floats_m;
     float slope_x[kHeightTexels], slope_y[kHeightTexels], horizon[kHeightTexels], sky[kHeightTexels] = {};
     double normal_x[kHeightTexels], normal_y[kHeightTexels];
     const double scale = 1.0 / (2.0 * window.spacing_m);
@@ -130,10 +128,6 @@ void compose_normal_row(const Window& window, int x0, int x1, int row_in_rect, u
         out[4 * i + 2] = half_from_float(sky[i] * 0.125f);
         out[4 * i + 3] = 0;
     }
-}
-
-glm::ivec2 first_sample(const MapPage& page) {
-    return {page.x * kHeightPayload - kHeightBorder, page.y * kHeightPayload - kHeightBorder};
 }
 
 void measure_range(HeightPage& page) {
@@ -186,35 +180,51 @@ void compose_page_heights(const Document& document, const VirtualMap& map, const
     for (size_t i = 0; i < heights_m.size(); ++i) out_m[i] = static_cast<float>(heights_m[i]);
 }
 
+void derive_page(const VirtualMap& map, int level, const TexelRect& window, const double* heights_m,
+                 const TexelRect& rect, HeightPage& out) {
+    LOAM_CHECK(window.x0 <= rect.x0 - kWindowMargin && window.y0 <= rect.y0 - kWindowMargin &&
+                   window.x1 >= rect.x1 + kWindowMargin && window.y1 >= rect.y1 + kWindowMargin,
+               "the window does not reach beyond the rectangle");
+    out.heights_m.resize(size_t(kHeightTexels) * kHeightTexels);
+    out.normals.resize(size_t(kHeightTexels) * kHeightTexels * 4);
+    const int width = window.width();
+    // Only the rows around the rectangle, and of those the columns.
+    thread_local std::vector<float> floats_m;
+    floats_m.resize(size_t(window.area()));
+    for (int y = rect.y0 - kWindowMargin; y < rect.y1 + kWindowMargin; ++y) {
+        const size_t row = size_t(y - window.y0) * size_t(width);
+        const size_t begin = row + size_t(rect.x0 - kWindowMargin - window.x0);
+        const size_t end = row + size_t(rect.x1 + kWindowMargin - window.x0);
+        for (size_t i = begin; i < end; ++i) floats_m[i] = static_cast<float>(heights_m[i]);
+    }
+    for (int y = rect.y0; y < rect.y1; ++y) {
+        const size_t from = size_t(y - window.y0) * size_t(width) + size_t(rect.x0 - window.x0);
+        const size_t to = size_t(y) * kHeightTexels + size_t(rect.x0);
+        std::copy_n(floats_m.data() + from, rect.width(), out.heights_m.data() + to);
+        derive_row({heights_m + from, floats_m.data() + from, width, map.spacing_m(level)}, rect.width(),
+                   out.normals.data() + to * 4);
+    }
+    measure_range(out);
+}
+
+glm::ivec2 first_sample(const MapPage& page) {
+    return {page.x * kHeightPayload - kHeightBorder, page.y * kHeightPayload - kHeightBorder};
+}
+
 void HeightMap::compose(const Document& document, const VirtualMap& map, const MapPage& page, const TexelRect& rect,
                         HeightPage& out) {
     LOAM_CHECK(rect == intersected(rect, {0, 0, kHeightTexels, kHeightTexels}), "rectangle beyond the page");
-    out.heights_m.resize(size_t(kHeightTexels) * kHeightTexels);
-    out.normals.resize(size_t(kHeightTexels) * kHeightTexels * 4);
     if (rect.empty()) return;
-
-    constexpr int kMargin = kOcclusionRadius;
-    const glm::ivec2 size(rect.width() + 2 * kMargin, rect.height() + 2 * kMargin);
-    const size_t count = size_t(size.x) * size_t(size.y);
+    const TexelRect window{rect.x0 - kWindowMargin, rect.y0 - kWindowMargin, rect.x1 + kWindowMargin,
+                           rect.y1 + kWindowMargin};
     thread_local std::vector<double> heights_m;
-    thread_local std::vector<float> floats_m;
-    heights_m.resize(count);
-    floats_m.resize(count);
+    heights_m.resize(size_t(window.area()));
     {
         const auto lock = document.read_lock();
-        const glm::ivec2 first = first_sample(page) + glm::ivec2(rect.x0, rect.y0) - kMargin;
-        compose_heights(document, map, page.level, first, size, heights_m.data());
+        compose_heights(document, map, page.level, first_sample(page) + glm::ivec2(window.x0, window.y0),
+                        {window.width(), window.height()}, heights_m.data());
     }
-    for (size_t i = 0; i < count; ++i) floats_m[i] = static_cast<float>(heights_m[i]);
-
-    const Window window{kMargin, size.x, map.spacing_m(page.level), heights_m.data(), floats_m.data()};
-    for (int y = rect.y0; y < rect.y1; ++y) {
-        const float* row = floats_m.data() + (y - rect.y0 + kMargin) * size.x + kMargin;
-        const size_t texel = size_t(y) * kHeightTexels + size_t(rect.x0);
-        std::copy(row, row + rect.width(), out.heights_m.begin() + ptrdiff_t(texel));
-        compose_normal_row(window, rect.x0, rect.x1, y - rect.y0, out.normals.data() + texel * 4);
-    }
-    measure_range(out);
+    derive_page(map, page.level, window, heights_m.data(), rect, out);
 }
 
 } // namespace loam

@@ -16,8 +16,22 @@ namespace loam {
 void compose_heights(const Document& document, const VirtualMap& map, int level, glm::ivec2 first, glm::ivec2 size,
                      double* out_m);
 
-// The heights alone of a whole page with its border, as HeightPage has them. Takes the ReadLock.
+// The same of a whole page with its border, as HeightPage has them. Takes the ReadLock.
 void compose_page_heights(const Document& document, const VirtualMap& map, const MapPage& page, float* out_m);
+
+// The heights that a page and its normals and occlusion are made from: the page's texels and kOcclusionRadius more on every
+// side, row 0 south. Kept beside a resident page, so that an edit evaluates only the heights that it changed.
+inline constexpr int kWindowMargin = kOcclusionRadius, kWindowTexels = kHeightTexels + 2 * kWindowMargin;
+inline constexpr TexelRect kWindowRect{-kWindowMargin, -kWindowMargin, kHeightTexels + kWindowMargin,
+                                       kHeightTexels + kWindowMargin}; // in texels of the page
+
+// Fills `rect` of the page, heights, normals, occlusion, range, from a piece of the window: `heights_m` holds `window` (in texels
+// of the page), which must reach kWindowMargin beyond the rectangle.
+void derive_page(const VirtualMap& map, int level, const TexelRect& window, const double* heights_m,
+                 const TexelRect& rect, HeightPage& out);
+
+// The page's texel (0, 0) in samples of its level.
+[[nodiscard]] glm::ivec2 first_sample(const MapPage& page);
 
 // Catmull-Rom weights of the four samples around a place, 0 <= f < 1 between the middle two.
 struct CubicWeights {

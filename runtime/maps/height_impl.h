@@ -39,7 +39,13 @@ class HeightQueryCache {
 };
 
 struct HeightMap::Impl {
-    Impl(const Document& d, const VirtualMapDesc& desc) : document(d), map(desc), pages(size_t(desc.slot_count)) {}
+    Impl(const Document& d, const VirtualMapDesc& desc) : document(d), map(desc), slots(size_t(desc.slot_count)) {}
+
+    struct Slot {
+        HeightPage page;
+        std::vector<double> window_m; // kWindowTexels²
+        TexelRect changed;            // of the window, in texels of the page: heights to evaluate again
+    };
 
     // The page's heights at the finest level, as they would be composed now. Cache's mutex held.
     const float* finest_heights(const MapPage& page);
@@ -47,7 +53,7 @@ struct HeightMap::Impl {
 
     const Document& document;
     VirtualMap map;
-    std::vector<HeightPage> pages; // one a slot
+    std::vector<Slot> slots;
     gpu::Image heights, normals;
     HeightQueryCache cache;
 };

@@ -1,8 +1,8 @@
 #include "runtime/maps/height_map.h"
 
 #include "runtime/base/check.h"
-#include "runtime/base/job_queue.h"
 #include "runtime/maps/base_window.h"
+#include "runtime/maps/height_compose.h"
 #include "runtime/maps/height_impl.h"
 #include "runtime/maps/rect_upload.h"
 
@@ -11,9 +11,6 @@
 namespace loam {
 
 namespace {
-
-// Texels below which threads cost more to start than they save: tuned on two cores, where a page takes about 0.5 ms.
-constexpr int64_t kParallelTexels = 4000;
 
 VirtualMapDesc map_desc(const Document& document, int slot_count) {
     const ProjectSettings& settings = document.settings();
@@ -68,30 +65,16 @@ void HeightMap::request(const MapPage& page, float priority) {
 }
 
 void HeightMap::on_dirt(std::span<const WorldRect> rects) {
-    const ProjectSettings& settings = impl_->document.settings();
-    // A base sample shapes the interpolated heights up to two samples away.
-    const double footprint_m = settings.refine > 0 ? 2 * settings.height_spacing_m : 0;
     for (const WorldRect& rect : rects) {
         if (rect.empty()) continue;
-        const WorldRect changed = extended_beyond_edges(rect.grown(footprint_m), impl_->document.bounds());
+        const WorldRect changed = extended_beyond_edges(rect, impl_->document.bounds());
         impl_->map.invalidate(changed, kOcclusionRadius);
+        impl_->map.for_each_resident([&](const MapPage& page, int slot, const TexelRect&) {
+            TexelRect& of_slot = impl_->slots[size_t(slot)].changed;
+            of_slot = united(of_slot, intersected(impl_->map.texels_in(page, changed), kWindowRect));
+        });
         impl_->cache.drop(impl_->map, changed);
     }
-}
-
-std::vector<VirtualMap::Work> HeightMap::Impl::compose_planned(uint64_t frame, int new_pages) {
-    std::vector<VirtualMap::Work> work = map.plan(frame, new_pages);
-    int64_t texels = 0;
-    for (const auto& w : work) texels += w.rect.area();
-    const int count = int(work.size());
-    const auto compose_range = [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-            const VirtualMap::Work& w = work[size_t(i)];
-            HeightMap::compose(document, map, w.page, w.rect, pages[size_t(w.slot)]);
-        }
-    };
-    parallel_ranges(count, texels >= kParallelTexels ? 1 : std::max(count, 1), compose_range);
-    return work;
 }
 
 Status HeightMap::update(gpu::FrameRing& ring, gpu::Commands& commands, uint64_t frame, int new_pages) {
@@ -99,7 +82,7 @@ Status HeightMap::update(gpu::FrameRing& ring, gpu::Commands& commands, uint64_t
     const std::vector<VirtualMap::Work> work = impl_->compose_planned(frame, new_pages);
     std::vector<RectUpload> heights, normals;
     for (const VirtualMap::Work& w : work) {
-        const HeightPage& page = impl_->pages[size_t(w.slot)];
+        const HeightPage& page = impl_->slots[size_t(w.slot)].page;
         heights.push_back({w.rect, uint32_t(w.slot), page.heights_m.data()});
         normals.push_back({w.rect, uint32_t(w.slot), page.normals.data()});
     }
@@ -140,7 +123,7 @@ uint32_t HeightMap::count_stale_pages(const Document& document) const {
         if (!dirty.empty()) return;
         HeightPage fresh;
         compose(document, impl_->map, page, {0, 0, kHeightTexels, kHeightTexels}, fresh);
-        const HeightPage& kept = impl_->pages[size_t(slot)];
+        const HeightPage& kept = impl_->slots[size_t(slot)].page;
         const bool same = std::memcmp(fresh.heights_m.data(), kept.heights_m.data(), fresh.heights_m.size() * 4) == 0 &&
                           fresh.normals == kept.normals && fresh.min_m == kept.min_m && fresh.max_m == kept.max_m;
         stale += same ? 0 : 1;
@@ -150,7 +133,7 @@ uint32_t HeightMap::count_stale_pages(const Document& document) const {
 
 const HeightPage* HeightMap::resident_page(const MapPage& page) const {
     const int slot = impl_->map.slot_of(page);
-    return slot < 0 ? nullptr : &impl_->pages[size_t(slot)];
+    return slot < 0 ? nullptr : &impl_->slots[size_t(slot)].page;
 }
 
 uint64_t HeightMap::gpu_bytes() const {
@@ -159,8 +142,9 @@ uint64_t HeightMap::gpu_bytes() const {
 
 uint64_t HeightMap::cpu_bytes() const {
     uint64_t bytes = impl_->cache.bytes();
-    for (const HeightPage& page : impl_->pages)
-        bytes += page.heights_m.capacity() * sizeof(float) + page.normals.capacity() * sizeof(uint16_t);
+    for (const Impl::Slot& slot : impl_->slots)
+        bytes += slot.page.heights_m.capacity() * sizeof(float) + slot.page.normals.capacity() * sizeof(uint16_t) +
+                 slot.window_m.capacity() * sizeof(double);
     return bytes;
 }
 

@@ -44,6 +44,8 @@ class HeightMap {
 
     [[nodiscard]] const VirtualMap& map() const;
     void request(const MapPage& page, float priority);
+    // Rectangles outside which no height of any level changes: the Document has grown those of base samples by what the
+    // interpolation reaches. Normals and occlusion are taken care of here.
     void on_dirt(std::span<const WorldRect> rects);
     // Composes at most `new_pages` whole pages and every dirty rectangle of requested pages; records the uploads and leaves
     // both arrays ready to be read in vertex and fragment shaders.

@@ -182,7 +182,7 @@ uint64_t HeightQueryCache::bytes() const {
 
 const float* HeightMap::Impl::finest_heights(const MapPage& page) {
     const int slot = map.slot_of(page);
-    if (slot >= 0 && map.dirty_of(slot).empty()) return pages[size_t(slot)].heights_m.data();
+    if (slot >= 0 && map.dirty_of(slot).empty()) return slots[size_t(slot)].page.heights_m.data();
     return cache.page(document, map, page);
 }
 

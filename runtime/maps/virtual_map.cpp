@@ -226,26 +226,26 @@ void VirtualMap::finish(const Work& work) {
     counters_.texels_composed += uint64_t(work.rect.area());
 }
 
+TexelRect VirtualMap::texels_in(const MapPage& page, const WorldRect& rect) const {
+    if (rect.empty()) return {};
+    const double spacing = spacing_m(page.level);
+    const auto [x0, x1] = samples_in(rect.min_x, rect.max_x, spacing);
+    const auto [y0, y1] = samples_in(rect.min_y, rect.max_y, spacing);
+    const int first_x = page.x * desc_.payload_texels - desc_.border_texels;
+    const int first_y = page.y * desc_.payload_texels - desc_.border_texels;
+    const TexelRect texels{x0 - first_x, y0 - first_y, x1 - first_x, y1 - first_y};
+    return texels.empty() ? TexelRect{} : texels; // a rectangle between the samples of this level changes none of them
+}
+
 int VirtualMap::invalidate(const WorldRect& rect, int grow_texels) {
-    if (rect.empty()) return 0;
     int touched = 0;
-    int level = -1;
-    std::pair<int, int> samples_x, samples_y;
     for (Slot& slot : slots_) {
         if (!slot.used) continue;
-        if (slot.page.level != level) {
-            level = slot.page.level;
-            samples_x = samples_in(rect.min_x, rect.max_x, spacing_m(level));
-            samples_y = samples_in(rect.min_y, rect.max_y, spacing_m(level));
-        }
-        // A rectangle between the samples of this level changes none of them.
-        if (samples_x.first >= samples_x.second || samples_y.first >= samples_y.second) continue;
-        const int first_x = slot.page.x * desc_.payload_texels - desc_.border_texels;
-        const int first_y = slot.page.y * desc_.payload_texels - desc_.border_texels;
-        const TexelRect texels = intersected(
-            TexelRect{samples_x.first - first_x - grow_texels, samples_y.first - first_y - grow_texels,
-             samples_x.second - first_x + grow_texels, samples_y.second - first_y + grow_texels},
-            TexelRect{0, 0, page_texels(), page_texels()});
+        const TexelRect samples = texels_in(slot.page, rect);
+        if (samples.empty()) continue;
+        const TexelRect grown{samples.x0 - grow_texels, samples.y0 - grow_texels, samples.x1 + grow_texels,
+                              samples.y1 + grow_texels};
+        const TexelRect texels = intersected(grown, TexelRect{0, 0, page_texels(), page_texels()});
         if (texels.empty()) continue;
         slot.dirty = united(slot.dirty, texels);
         if (slot.priority > 0) has_work_ = true;

@@ -68,6 +68,8 @@ class VirtualMap {
 
     [[nodiscard]] int slot_of(const MapPage& page) const; // -1: not resident
     [[nodiscard]] TexelRect dirty_of(int slot) const;     // of the page in the slot; what is being composed included
+    // The texels of a page whose samples lie in a rectangle, not clipped to the page.
+    [[nodiscard]] TexelRect texels_in(const MapPage& page, const WorldRect& rect) const;
     // The page itself if resident, else its nearest resident ancestor.
     [[nodiscard]] MapPage finest_resident(MapPage page) const;
 
