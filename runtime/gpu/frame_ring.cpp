@@ -311,7 +311,8 @@ uint32_t FrameRing::open_timer(const char* name) {
 }
 
 void FrameRing::close_timer(uint32_t query) {
-    if (query == kNoQuery || !current_) return;
+    LOAM_CHECK(current_, "a pass outlived its frame");
+    if (query == kNoQuery) return;
     vkCmdWriteTimestamp2(current_->frame.commands.buffer_, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
                          current_->queries, query + 1);
 }
