@@ -2,13 +2,16 @@
 // journal all make these.
 //
 //   {"cmd":"sculpt","mode":"raise","dabs":[[x,y],…],"radius_m":10,"strength_m":0.5,"hardness":0.5}
-//       modes: raise, lower (strength_m a dab), smooth, flatten (strength 0…1; flatten has "target_m")
+//       modes: raise, lower (strength_m a dab), smooth, flatten (strength 0…1; flatten has "target_m"); either
+//       name of the strength is read in any mode
 //   {"cmd":"paint","dabs":[[x,y],…],"radius_m":5,"layer":"rock","strength":1,"hardness":0.5,"seed":1,
 //    "min_slope_rad":0,"max_slope_rad":1.5708,"tint":[r,g,b]}   ("layer" or "tint" or both)
 //   {"cmd":"crater","x":…,"y":…,"radius_m":10,"depth_m":4,"seed":7}
 //   {"cmd":"footprints","prints":[{"x":…,"y":…,"heading_rad":…,"foot":0},…],"length_m":0.3,"depth_m":0.03,"seed":1}
+//       a print may have its own length_m, depth_m and seed; else print i has seed + i
 //   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}
 //   {"cmd":"undo"}    {"cmd":"redo"}
+// Required: mode and dabs; target_m to flatten; layer or tint; x and y; prints; id and enabled. The rest have the defaults below.
 // Any command may carry "group": n. Consecutive commands of one group undo together.
 #pragma once
 
@@ -19,6 +22,7 @@
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
 
 #include "runtime/base/result.h"
 #include "runtime/document/operator.h"
@@ -73,7 +77,10 @@ struct Command {
 
 // One line of JSON. Unknown commands, unknown keys, missing or non-finite numbers are refused with what and where.
 [[nodiscard]] Result<Command> parse_command(std::string_view json_line);
+// Reading the text back gives the same command, numbers bit for bit.
 [[nodiscard]] std::string to_json(const Command& command);
+// The ranges of all numbers; `apply` and parse_command refuse what does not pass.
+[[nodiscard]] Status check_command(const Command& command);
 
 // Brush falloff, 1 at the centre to 0 at the rim; `t` = distance / radius. Smooth (C1) for any hardness.
 [[nodiscard]] double brush_falloff(double t, double hardness);

@@ -10,6 +10,7 @@
 
 #include "runtime/base/rect.h"
 #include "runtime/base/result.h"
+#include "runtime/store/index_texel.h"
 
 namespace loam {
 
@@ -51,14 +52,6 @@ struct SampleGrid {
     double x0_m = 0, y0_m = 0, step_m = 1;
     [[nodiscard]] T& at(int i, int j) const { return data[j * stride + i]; }
 };
-
-struct IndexTexel {
-    uint16_t layer = 0;
-    uint8_t tint[3] = {255, 255, 255}; // sRGB-encoded, multiplies the layer's albedo
-    uint8_t unused = 0;
-    bool operator==(const IndexTexel&) const = default;
-};
-static_assert(sizeof(IndexTexel) == 6);
 
 struct ResolvedRoles { // LayerRoles as indices
     uint16_t scorched = 0, broken = 0;

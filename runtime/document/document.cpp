@@ -1,0 +1,299 @@
+#include "runtime/document/document.h"
+
+#include <bit>
+
+#include "runtime/base/check.h"
+#include "runtime/base/log.h"
+#include "runtime/document/document_impl.h"
+#include "runtime/document/operator_json.h"
+
+namespace loam {
+
+namespace {
+
+std::vector<std::pair<std::string, int64_t>> identity_of(const ProjectSettings& s) {
+    return {{"height_samples_x", s.height_samples_x},
+            {"height_samples_y", s.height_samples_y},
+            {"height_spacing_m", std::bit_cast<int64_t>(s.height_spacing_m)},
+            {"index_spacing_m", std::bit_cast<int64_t>(s.index_spacing_m)},
+            {"default_height_mm", s.default_height_mm},
+            {"default_layer", s.default_layer}};
+}
+
+template <typename Sample>
+void read_base(BasePages& pages, const MapShape& shape, const Sample& fallback, int mip, const TexelRect& window, Sample* out) {
+    LOAM_CHECK(mip >= 0 && mip < shape.mip_count, fmt::format("mip {} of {}", mip, shape.mip_count));
+    PageHandle<Sample> keep;
+    read_window(shape, mip, window.x0, window.y0, window.width(), window.height(), fallback,
+                [&](int page_x, int page_y) -> const BasePage<Sample>* {
+                    auto page = pages.load<Sample>({shape.map, mip, page_x, page_y});
+                    // A damaged page reads as default; commands that would overwrite it are refused (PageEdits).
+                    if (!page.ok()) log(LogLevel::error, "{}", page.message());
+                    keep = page.ok() ? *page : nullptr;
+                    return keep.get();
+                },
+                out);
+}
+
+Result<uint64_t> meta_or(PageStore& store, const char* name, uint64_t otherwise) {
+    const auto value = store.read_meta(name);
+    if (!value.ok()) return value.error();
+    return value->has_value() ? uint64_t(**value) : otherwise;
+}
+
+uint64_t digest_of(uint64_t hash, std::span<const uint8_t> bytes) {
+    for (const uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3ull; // FNV-1a
+    return hash;
+}
+uint64_t digest_of(uint64_t hash, uint64_t number) {
+    for (int i = 0; i < 8; ++i) hash = (hash ^ (number >> (8 * i) & 255)) * 0x100000001b3ull;
+    return hash;
+}
+
+} // namespace
+
+Status write_identity(PageStore& store, const ProjectSettings& settings) {
+    for (const auto& [name, value] : identity_of(settings)) LOAM_TRY(store.write_meta(name, value));
+    return {};
+}
+
+Status check_identity(PageStore& store, const ProjectSettings& settings) {
+    for (const auto& [name, value] : identity_of(settings)) {
+        const auto stored = store.read_meta(name);
+        if (!stored.ok()) return stored.error();
+        if (!stored->has_value()) return error("terrain.db does not say its {}; it is damaged", name);
+        if (**stored != value)
+            return error("project.toml and terrain.db disagree about {}: the terrain was made with another value; "
+                         "restore project.toml",
+                         name);
+    }
+    return {};
+}
+
+Result<std::unique_ptr<Document>> Document::create(const std::filesystem::path& folder, const ProjectSettings& settings) {
+    LOAM_TRY(check_settings(settings));
+    std::error_code failure;
+    for (const char* file : {"project.toml", "terrain.db"})
+        if (std::filesystem::exists(folder / file, failure))
+            return error("{} already holds a project ({}); choose another folder", folder.string(), file);
+    std::filesystem::create_directories(folder, failure);
+    if (failure) return error("cannot make the folder {}: {}", folder.string(), failure.message());
+
+    const auto fill = [&]() -> Status {
+        auto lock = WriterLock::acquire(folder);
+        if (!lock.ok()) return lock.error();
+        auto store = PageStore::open(folder / "terrain.db", DatabaseMode::create);
+        if (!store.ok()) return store.error();
+        LOAM_TRY(store->begin());
+        const Status identity = write_identity(*store, settings);
+        if (!identity.ok()) {
+            store->rollback();
+            return identity;
+        }
+        LOAM_TRY(store->commit());
+        return save_project(folder, settings); // last: a folder with a project.toml has a database
+    };
+    const Status status = fill();
+    if (!status.ok()) {
+        for (const char* file : {"terrain.db", "terrain.db-wal", "terrain.db-shm", "project.toml.new"})
+            std::filesystem::remove(folder / file, failure);
+        return status.error();
+    }
+    return open(folder, OpenMode::read_write);
+}
+
+Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& folder, OpenMode mode) {
+    auto settings = load_project(folder);
+    if (!settings.ok()) return settings.error();
+    auto impl = std::make_unique<Impl>();
+    impl->folder = folder;
+    impl->settings = std::move(*settings);
+    impl->mode = mode;
+    if (mode == OpenMode::read_write) {
+        auto lock = WriterLock::acquire(folder);
+        if (!lock.ok()) return lock.error();
+        impl->lock = std::move(lock).value();
+        auto store = PageStore::open(folder / "terrain.db", DatabaseMode::read_write);
+        if (!store.ok()) return store.error();
+        impl->store = std::move(store).value();
+    }
+    auto reader = PageStore::open(folder / "terrain.db", DatabaseMode::read_only);
+    if (!reader.ok()) return reader.error();
+    impl->pages = std::make_unique<BasePages>(std::move(reader).value(), kPageCacheBytes);
+    LOAM_TRY(impl->load());
+    return std::unique_ptr<Document>(new Document(std::move(impl)));
+}
+
+Status Document::Impl::load() {
+    height = height_shape(settings);
+    index = index_shape(settings);
+    return pages->with_store([&](PageStore& reader) -> Status {
+        LOAM_TRY(check_identity(reader, settings));
+        LOAM_TRY(reader.for_each_operator([&](uint64_t id, const std::string& json) -> Status {
+            const auto op = parse_operator(id, json);
+            if (!op.ok()) return error("terrain.db: {}", op.message());
+            operators.set(*op);
+            return {};
+        }));
+        auto journal = reader.journal_heads();
+        if (!journal.ok()) return journal.error();
+        heads = std::move(*journal);
+        for (const auto& head : heads) next_group = std::max(next_group, head.group + 1);
+        for (const auto& [name, value] : {std::pair<const char*, uint64_t*>{"next_operator", &next_operator},
+                                          {"next_sequence", &next_sequence}}) {
+            const auto stored = meta_or(reader, name, 1);
+            if (!stored.ok()) return stored.error();
+            *value = *stored;
+        }
+        for (const auto& [name, value] : {std::pair<const char*, int64_t*>{"height_pages", &page_count.height},
+                                          {"index_pages", &page_count.index}}) {
+            const auto stored = meta_or(reader, name, 0);
+            if (!stored.ok()) return stored.error();
+            *value = int64_t(*stored);
+        }
+        return {};
+    });
+}
+
+Status Document::Impl::may_write() const {
+    if (mode == OpenMode::read_only) return error("{} is open read-only", folder.string());
+    if (bulk_writing) return error("a bulk write is going on; finish it first");
+    return {};
+}
+
+size_t Document::Impl::applied_count() const {
+    size_t count = heads.size();
+    while (count > 0 && !heads[count - 1].applied) --count;
+    return count;
+}
+
+Document::Document(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Document::~Document() = default;
+
+const std::filesystem::path& Document::folder() const {
+    return impl_->folder;
+}
+const ProjectSettings& Document::settings() const {
+    return impl_->settings;
+}
+uint64_t Document::revision() const {
+    return impl_->revision;
+}
+
+bool Document::can_undo() const {
+    return impl_->mode == OpenMode::read_write && impl_->applied_count() > 0;
+}
+bool Document::can_redo() const {
+    return impl_->mode == OpenMode::read_write && impl_->applied_count() < impl_->heads.size();
+}
+uint64_t Document::next_group() {
+    return impl_->next_group++;
+}
+
+Result<std::vector<Document::HistoryEntry>> Document::history(int newest_count) const {
+    const ReadLock lock = read_lock();
+    const auto& heads = impl_->heads;
+    std::vector<HistoryEntry> entries;
+    if (heads.empty() || newest_count <= 0) return entries;
+    const size_t count = std::min(heads.size(), size_t(newest_count));
+    const Status status = impl_->pages->with_store([&](PageStore& reader) {
+        return reader.for_each_journal(heads[heads.size() - count].sequence, PageStore::JournalColumns::text,
+                                       [&](const JournalRow& row) {
+                                           entries.push_back({row.sequence, row.group, row.applied, row.json});
+                                           return Status();
+                                       });
+    });
+    if (!status.ok()) return status.error();
+    std::reverse(entries.begin(), entries.end());
+    return entries;
+}
+
+Status Document::change_settings(const ProjectSettings& settings) {
+    LOAM_TRY(impl_->may_write());
+    LOAM_TRY(check_settings(settings));
+    const auto before = identity_of(impl_->settings), after = identity_of(settings);
+    for (size_t i = 0; i < before.size(); ++i)
+        if (before[i] != after[i]) return error("{} cannot change once a project exists", before[i].first);
+    LOAM_TRY(save_project(impl_->folder, settings));
+    const std::unique_lock lock(impl_->mutex);
+    impl_->settings = settings;
+    ++impl_->revision;
+    return {};
+}
+
+Document::ReadLock Document::read_lock() const {
+    return ReadLock(impl_->mutex);
+}
+void Document::read_heights_mm(int mip, int x0, int y0, int width, int height, int32_t* out) const {
+    read_base(*impl_->pages, impl_->height, impl_->settings.default_height_mm, mip,
+              TexelRect{x0, y0, x0 + width, y0 + height}, out);
+}
+void Document::read_index(int mip, int x0, int y0, int width, int height, IndexTexel* out) const {
+    read_base(*impl_->pages, impl_->index, default_texel(impl_->settings), mip, TexelRect{x0, y0, x0 + width, y0 + height},
+              out);
+}
+int Document::height_mip_count() const {
+    return impl_->height.mip_count;
+}
+int Document::index_mip_count() const {
+    return impl_->index.mip_count;
+}
+glm::ivec2 Document::index_size_texels() const {
+    return {impl_->index.samples_x, impl_->index.samples_y};
+}
+void Document::operators_over_height(const WorldRect& rect, std::vector<const Operator*>& out) const {
+    impl_->operators.over_height().query(rect, out);
+}
+void Document::operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const {
+    impl_->operators.over_index().query(rect, out);
+}
+void Document::operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const {
+    impl_->operators.over_texture().query(rect, out);
+}
+std::vector<Operator> Document::operators() const {
+    const ReadLock lock = read_lock();
+    return impl_->operators.sorted();
+}
+
+ResolvedRoles Document::roles() const {
+    const auto resolved = [&](const std::string& name) { return uint16_t(std::max(0, layer_index(name))); };
+    return {resolved(impl_->settings.roles.scorched), resolved(impl_->settings.roles.broken)};
+}
+int Document::layer_index(std::string_view name) const {
+    const auto& layers = impl_->settings.layers;
+    for (size_t i = 0; i < layers.size(); ++i)
+        if (layers[i].name == name) return int(i);
+    return -1;
+}
+
+Document::Statistics Document::statistics() const {
+    const ReadLock lock = read_lock();
+    Statistics s;
+    s.height_pages = uint64_t(impl_->page_count.height);
+    s.index_pages = uint64_t(impl_->page_count.index);
+    s.database_bytes = impl_->pages->with_store([](PageStore& reader) { return reader.file_bytes(); });
+    s.operators = impl_->operators.size();
+    s.commands = impl_->heads.size();
+    s.cached_pages = impl_->pages->cached_pages();
+    s.cache_bytes = impl_->pages->cached_bytes();
+    return s;
+}
+
+Result<uint64_t> Document::content_digest() const {
+    const ReadLock lock = read_lock();
+    uint64_t digest = 0xcbf29ce484222325ull;
+    const Status status = impl_->pages->with_store([&](PageStore& reader) -> Status {
+        LOAM_TRY(reader.for_each_page([&](int64_t key, std::span<const uint8_t> blob) {
+            digest = digest_of(digest_of(digest, uint64_t(key)), blob);
+            return Status();
+        }));
+        return reader.for_each_operator([&](uint64_t id, const std::string& json) {
+            digest = digest_of(digest_of(digest, id), {reinterpret_cast<const uint8_t*>(json.data()), json.size()});
+            return Status();
+        });
+    });
+    if (!status.ok()) return status.error();
+    return digest;
+}
+
+} // namespace loam

@@ -1,0 +1,268 @@
+// Commands: compute on copies, one transaction, then show it. Undo and redo: the same swap of rows and images.
+#include <algorithm>
+
+#include "runtime/document/dirt.h"
+#include "runtime/document/document_impl.h"
+#include "runtime/document/operator_json.h"
+#include "runtime/document/paint.h"
+#include "runtime/document/sculpt.h"
+
+namespace loam {
+
+namespace {
+
+// Readers outside the map see its nearest sample, so a changed sample at the edge changes all that lies beyond it. Farther
+// than twice the largest map no page reaches.
+constexpr double kBeyond_m = 65536;
+
+// World rectangles that changed samples influence: `reach` spacings around them.
+std::vector<WorldRect> dirt_of_samples(const MapShape& shape, const std::vector<TexelRect>& changed, int reach) {
+    std::vector<WorldRect> rects;
+    for (const TexelRect& r : changed)
+        rects.push_back(WorldRect{r.x0 * shape.spacing_m, r.y0 * shape.spacing_m, (r.x1 - 1) * shape.spacing_m,
+                                  (r.y1 - 1) * shape.spacing_m}
+                            .grown(reach * shape.spacing_m));
+    merge_rects(rects, kMaxStrokeRects);
+    const double east = (shape.samples_x - 1) * shape.spacing_m, north = (shape.samples_y - 1) * shape.spacing_m;
+    const double near_edge = (reach - 0.5) * shape.spacing_m;
+    for (WorldRect& rect : rects) {
+        if (rect.min_x <= -near_edge) rect.min_x = -kBeyond_m;
+        if (rect.min_y <= -near_edge) rect.min_y = -kBeyond_m;
+        if (rect.max_x >= east + near_edge) rect.max_x = east + kBeyond_m;
+        if (rect.max_y >= north + near_edge) rect.max_y = north + kBeyond_m;
+    }
+    return rects;
+}
+
+void add_page_images(std::vector<PageChange>& changes, std::vector<RowImage>& images) {
+    for (PageChange& change : changes) images.push_back({RowImage::Kind::page, change.key, change.blob});
+}
+
+void merge_dirt(Dirt& dirt, size_t most) {
+    merge_rects(dirt.height, most);
+    merge_rects(dirt.index, most);
+    merge_rects(dirt.texture, most);
+}
+
+} // namespace
+
+Status Document::Impl::compute(const SculptCommand& command, Change& change) {
+    change.heights.emplace(*pages, height, settings.default_height_mm);
+    LOAM_TRY(sculpt(command, *change.heights));
+    std::vector<TexelRect> changed;
+    auto result = change.heights->finish(changed);
+    if (!result.ok()) return result.error();
+    change.height_changes = std::move(*result);
+    add_page_images(change.height_changes, change.images);
+    change.dirt.height = dirt_of_samples(height, changed, 2); // bicubic: two samples on either side
+    return {};
+}
+
+Status Document::Impl::compute(const PaintCommand& command, Change& change) {
+    int layer = 0;
+    if (command.layer) {
+        for (size_t i = 0; i < settings.layers.size(); ++i)
+            if (settings.layers[i].name == *command.layer) layer = int(i) + 1;
+        if (layer == 0) {
+            std::string known;
+            for (const LayerEntry& entry : settings.layers) known += (known.empty() ? "" : ", ") + entry.name;
+            return error("unknown layer \"{}\" (known: {})", *command.layer, known.empty() ? "none" : known);
+        }
+        --layer;
+    }
+    change.texels.emplace(*pages, index, default_texel(settings));
+    SlopeReader slopes(*pages, height, settings.default_height_mm);
+    LOAM_TRY(paint(command, uint16_t(layer), slopes, *change.texels));
+    std::vector<TexelRect> changed;
+    auto result = change.texels->finish(changed);
+    if (!result.ok()) return result.error();
+    change.index_changes = std::move(*result);
+    add_page_images(change.index_changes, change.images);
+    change.dirt.index = dirt_of_samples(index, changed, 1); // nearest or bilinear: one texel on either side
+    return {};
+}
+
+// `op`: its new state, or none to remove it.
+void Document::Impl::change_operator(uint64_t id, const std::optional<Operator>& op, Change& change) {
+    RowImage image{RowImage::Kind::op, int64_t(id), std::nullopt};
+    if (op) {
+        const std::string json = operator_json(*op);
+        image.bytes.emplace(json.begin(), json.end());
+    }
+    change.images.push_back(std::move(image));
+    // Moved or switched: where it was and where it is.
+    const Operator* before = operators.find(id);
+    for (const Operator* state : {before, op ? &*op : nullptr}) {
+        if (!state || (!state->enabled && !(before && before->enabled))) continue;
+        change.dirt.height.push_back(state->height_bounds());
+        change.dirt.index.push_back(state->index_bounds());
+        change.dirt.texture.push_back(state->texture_bounds());
+    }
+    change.operators[id] = op;
+}
+
+Status Document::Impl::compute(const CraterCommand& command, Change& change) {
+    const uint64_t id = change.next_operator++;
+    change_operator(id, Operator{.id = id, .order = id, .enabled = true, .shape = command.crater}, change);
+    return {};
+}
+
+Status Document::Impl::compute(const FootprintsCommand& command, Change& change) {
+    for (const Footprint& print : command.prints) {
+        const uint64_t id = change.next_operator++;
+        change_operator(id, Operator{.id = id, .order = id, .enabled = true, .shape = print}, change);
+    }
+    return {};
+}
+
+Status Document::Impl::compute(const SetOperatorCommand& command, Change& change) {
+    const Operator* op = operators.find(command.id);
+    if (!op) return error("there is no operator {}", command.id);
+    if (op->enabled == command.enabled) return {};
+    Operator switched = *op;
+    switched.enabled = command.enabled;
+    change_operator(command.id, switched, change);
+    return {};
+}
+
+Status Document::Impl::compute(const RemoveOperatorCommand& command, Change& change) {
+    if (!operators.find(command.id)) return error("there is no operator {}", command.id);
+    change_operator(command.id, std::nullopt, change);
+    return {};
+}
+
+Status Document::Impl::write_change(Change& change, const JournalRow& row_head, const PageBalance& before) {
+    if (applied_count() < heads.size()) LOAM_TRY(store.erase_undone());
+    PageBalance balance = before;
+    LOAM_TRY(swap_images(store, change.images, balance));
+    JournalRow row = row_head;
+    row.images = image_bytes(change.images);
+    row.dirt = dirt_bytes(change.dirt);
+    LOAM_TRY(store.write_journal(row));
+    LOAM_TRY(store.write_meta("next_sequence", int64_t(row.sequence + 1)));
+    if (change.next_operator != next_operator) LOAM_TRY(store.write_meta("next_operator", int64_t(change.next_operator)));
+    if (balance.height != before.height) LOAM_TRY(store.write_meta("height_pages", balance.height));
+    if (balance.index != before.index) LOAM_TRY(store.write_meta("index_pages", balance.index));
+    page_count = balance;
+    return {};
+}
+
+Result<Dirt> Document::Impl::commit_change(Change& change, const Command& command) {
+    const JournalRow row{.sequence = next_sequence,
+                         .group = command.group,
+                         .applied = true,
+                         .json = to_json(command),
+                         .images = {},
+                         .dirt = {}};
+    const PageBalance before = page_count;
+    LOAM_TRY(store.begin());
+    Status status = write_change(change, row, before);
+    if (status.ok()) {
+        const std::unique_lock exclusive(mutex);
+        status = store.commit();
+        if (status.ok()) {
+            if (change.heights) change.heights->publish(change.height_changes);
+            if (change.texels) change.texels->publish(change.index_changes);
+            for (const auto& [id, op] : change.operators) op ? operators.set(*op) : operators.remove(id);
+            heads.resize(applied_count());
+            heads.push_back({row.sequence, row.group, true});
+            next_sequence = row.sequence + 1;
+            next_operator = change.next_operator;
+            next_group = std::max(next_group, row.group + 1);
+            ++revision;
+            return std::move(change.dirt);
+        }
+    }
+    store.rollback();
+    page_count = before;
+    return status.error();
+}
+
+Status Document::Impl::write_swaps(size_t first, size_t end, bool applied, Change& change, PageBalance& balance) {
+    const size_t count = end - first;
+    for (size_t i = 0; i < count; ++i) {
+        // Undo from the newest back, redo from the oldest on.
+        auto row = store.read_journal(heads[applied ? first + i : end - 1 - i].sequence);
+        if (!row.ok()) return row.error();
+        auto images = images_of(row->images);
+        if (!images.ok()) return images.error();
+        for (const RowImage& image : *images) {
+            if (image.kind == RowImage::Kind::page) {
+                change.height_changes.push_back({image.key, std::nullopt}); // of either map: only the key counts here
+                continue;
+            }
+            auto& op = change.operators[uint64_t(image.key)];
+            op.reset();
+            if (!image.bytes) continue;
+            auto parsed = parse_operator(uint64_t(image.key),
+                                         {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
+            if (!parsed.ok()) return error("the journal: {}", parsed.message());
+            op = *parsed;
+        }
+        auto dirt = dirt_of(row->dirt);
+        if (!dirt.ok()) return dirt.error();
+        append_dirt(change.dirt, *dirt);
+        LOAM_TRY(swap_images(store, *images, balance));
+        row->images = image_bytes(*images);
+        row->applied = applied;
+        LOAM_TRY(store.write_journal(*row));
+    }
+    LOAM_TRY(store.write_meta("height_pages", balance.height));
+    return store.write_meta("index_pages", balance.index);
+}
+
+Result<Dirt> Document::Impl::swap_commands(size_t first, size_t end, bool applied) {
+    Change change;
+    PageBalance balance = page_count;
+    LOAM_TRY(store.begin());
+    Status status = write_swaps(first, end, applied, change, balance);
+    if (status.ok()) {
+        const std::unique_lock exclusive(mutex);
+        status = store.commit();
+        if (status.ok()) {
+            for (const PageChange& page : change.height_changes) pages->forget(page.key);
+            for (const auto& [id, op] : change.operators) op ? operators.set(*op) : operators.remove(id);
+            for (size_t i = first; i < end; ++i) heads[i].applied = applied;
+            page_count = balance;
+            ++revision;
+            merge_dirt(change.dirt, kMaxOperatorRects);
+            return std::move(change.dirt);
+        }
+    }
+    store.rollback();
+    return status.error();
+}
+
+Result<Dirt> Document::apply(const Command& command) {
+    if (std::holds_alternative<UndoCommand>(command.body)) return undo();
+    if (std::holds_alternative<RedoCommand>(command.body)) return redo();
+    LOAM_TRY(impl_->may_write());
+    LOAM_TRY(check_command(command));
+    Impl::Change change;
+    change.next_operator = impl_->next_operator;
+    LOAM_TRY(std::visit([&](const auto& body) { return impl_->compute(body, change); }, command.body));
+    merge_dirt(change.dirt, kMaxOperatorRects);
+    return impl_->commit_change(change, command);
+}
+
+Result<Dirt> Document::undo() {
+    LOAM_TRY(impl_->may_write());
+    const auto& heads = impl_->heads;
+    const size_t end = impl_->applied_count();
+    if (end == 0) return error("nothing to undo");
+    size_t first = end - 1;
+    while (first > 0 && heads[first].group != 0 && heads[first - 1].group == heads[first].group) --first;
+    return impl_->swap_commands(first, end, false);
+}
+
+Result<Dirt> Document::redo() {
+    LOAM_TRY(impl_->may_write());
+    const auto& heads = impl_->heads;
+    const size_t first = impl_->applied_count();
+    if (first == heads.size()) return error("nothing to redo");
+    size_t end = first + 1;
+    while (end < heads.size() && heads[first].group != 0 && heads[end].group == heads[first].group) ++end;
+    return impl_->swap_commands(first, end, true);
+}
+
+} // namespace loam

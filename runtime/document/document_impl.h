@@ -1,0 +1,83 @@
+// What a Document holds. Internal to this folder.
+//
+// Committing: a change is computed on copies of pages, written in a transaction, and only then, under the exclusive lock,
+// committed and shown to readers. If anything fails before that, memory has nothing to take back.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <optional>
+#include <shared_mutex>
+#include <vector>
+
+#include "runtime/document/base_map.h"
+#include "runtime/document/document.h"
+#include "runtime/document/journal_images.h"
+#include "runtime/document/operator_set.h"
+#include "runtime/document/page_edits.h"
+#include "runtime/store/page_store.h"
+#include "runtime/store/writer_lock.h"
+
+namespace loam {
+
+inline constexpr size_t kPageCacheBytes = size_t(256) << 20;
+inline constexpr size_t kMaxStrokeRects = 8, kMaxOperatorRects = 64;
+
+// terrain.db's copy of what its pages were made with.
+Status write_identity(PageStore& store, const ProjectSettings& settings);
+Status check_identity(PageStore& store, const ProjectSettings& settings);
+
+[[nodiscard]] inline IndexTexel default_texel(const ProjectSettings& settings) {
+    IndexTexel texel;
+    texel.layer = settings.default_layer;
+    return texel;
+}
+
+struct Document::Impl {
+    std::filesystem::path folder;
+    ProjectSettings settings;
+    OpenMode mode = OpenMode::read_write;
+    MapShape height, index;
+    WriterLock lock;
+    PageStore store; // the writing connection; not open in a read-only document
+    std::unique_ptr<BasePages> pages;
+    OperatorSet operators;
+    std::vector<PageStore::JournalHead> heads; // ascending; the applied ones come first
+    uint64_t next_operator = 1, next_sequence = 1, next_group = 1;
+    PageBalance page_count;
+    std::atomic<uint64_t> revision{1};
+    mutable std::shared_mutex mutex; // exclusive while a change becomes visible
+    bool bulk_writing = false;
+
+    Status load();
+    Status may_write() const;
+    [[nodiscard]] size_t applied_count() const;
+
+    // --- commands (document_apply.cpp) ---
+    struct Change {
+        std::vector<RowImage> images; // new rows; after the swap, the old ones
+        std::map<uint64_t, std::optional<Operator>> operators;
+        std::optional<PageEdits<int32_t>> heights;
+        std::optional<PageEdits<IndexTexel>> texels;
+        std::vector<PageChange> height_changes, index_changes;
+        Dirt dirt;
+        uint64_t next_operator = 0;
+    };
+    Status compute(const SculptCommand& command, Change& change);
+    Status compute(const PaintCommand& command, Change& change);
+    Status compute(const CraterCommand& command, Change& change);
+    Status compute(const FootprintsCommand& command, Change& change);
+    Status compute(const SetOperatorCommand& command, Change& change);
+    Status compute(const RemoveOperatorCommand& command, Change& change);
+    Status compute(const UndoCommand&, Change&) { return error("undo is not a command of the journal"); }
+    Status compute(const RedoCommand&, Change&) { return error("redo is not a command of the journal"); }
+    void change_operator(uint64_t id, const std::optional<Operator>& op, Change& change);
+    Status write_change(Change& change, const JournalRow& row, const PageBalance& before);
+    Result<Dirt> commit_change(Change& change, const Command& command);
+    // Swaps the rows of the journal heads [first, end), the direction that `applied` names, in one transaction.
+    Result<Dirt> swap_commands(size_t first, size_t end, bool applied);
+    Status write_swaps(size_t first, size_t end, bool applied, Change& change, PageBalance& balance);
+};
+
+} // namespace loam

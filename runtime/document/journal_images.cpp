@@ -1,0 +1,77 @@
+#include "runtime/document/journal_images.h"
+
+#include "runtime/document/byte_stream.h"
+
+namespace loam {
+
+namespace {
+
+Status swap_page(PageStore& store, RowImage& image, PageBalance& balance) {
+    auto current = store.read_page(image.key);
+    if (!current.ok()) return current.error();
+    if (image.bytes)
+        LOAM_TRY(store.write_page(image.key, *image.bytes));
+    else
+        LOAM_TRY(store.erase_page(image.key));
+    int64_t& count = PageKey::unpacked(image.key).map == BaseMap::height ? balance.height : balance.index;
+    count += int64_t(image.bytes.has_value()) - int64_t(current->has_value());
+    image.bytes = std::move(*current);
+    return {};
+}
+
+Status swap_operator(PageStore& store, RowImage& image) {
+    const uint64_t id = uint64_t(image.key);
+    auto current = store.read_operator(id);
+    if (!current.ok()) return current.error();
+    if (image.bytes)
+        LOAM_TRY(store.write_operator(id, {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()}));
+    else
+        LOAM_TRY(store.erase_operator(id));
+    image.bytes.reset();
+    if (current->has_value()) image.bytes.emplace((*current)->begin(), (*current)->end());
+    return {};
+}
+
+} // namespace
+
+std::vector<uint8_t> image_bytes(const std::vector<RowImage>& images) {
+    ByteWriter writer;
+    for (const RowImage& image : images) {
+        writer.u8(uint8_t(image.kind));
+        writer.u64(uint64_t(image.key));
+        writer.u8(image.bytes.has_value());
+        writer.u32(image.bytes ? uint32_t(image.bytes->size()) : 0);
+        if (image.bytes) writer.bytes(*image.bytes);
+    }
+    return writer.take();
+}
+
+Result<std::vector<RowImage>> images_of(std::span<const uint8_t> bytes) {
+    ByteReader reader(bytes);
+    std::vector<RowImage> images;
+    while (reader.ok() && !reader.at_end()) {
+        RowImage image;
+        const uint8_t kind = reader.u8();
+        image.key = int64_t(reader.u64());
+        const uint8_t present = reader.u8();
+        const auto content = reader.bytes(reader.u32());
+        if (kind > 1 || present > 1 || (present == 0 && !content.empty())) return error("damaged images of a command in the journal");
+        image.kind = RowImage::Kind(kind);
+        if (present == 1) image.bytes.emplace(content.begin(), content.end());
+        images.push_back(std::move(image));
+    }
+    if (!reader.ok()) return error("the images of a command in the journal are cut short");
+    return images;
+}
+
+Status swap_images(PageStore& store, std::vector<RowImage>& images, PageBalance& balance) {
+    for (RowImage& image : images) {
+        if (image.kind == RowImage::Kind::page)
+            LOAM_TRY(swap_page(store, image, balance));
+        else
+            LOAM_TRY(swap_operator(store, image));
+    }
+    return {};
+}
+
+} // namespace loam

@@ -1,0 +1,380 @@
+// Commands and operators as JSON, both ways: the only file that sees nlohmann-json. Its exceptions, and the `Refused` of
+// this file, end at the two parse functions.
+#include <cmath>
+#include <set>
+
+#include <nlohmann/json.hpp>
+
+#include "runtime/document/command.h"
+#include "runtime/document/operator_json.h"
+
+namespace loam {
+
+namespace {
+
+using Json = nlohmann::json;
+
+struct Refused {
+    std::string message;
+};
+
+template <typename... Args>
+[[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) {
+    throw Refused{fmt::format(format, std::forward<Args>(args)...)};
+}
+
+// An object's fields: every one asked for is marked, and finish() refuses what nobody asked for.
+class Fields {
+  public:
+    Fields(const Json& object, std::string place) : object_(object), place_(std::move(place)) {
+        if (!object.is_object()) refuse("{} must be an object, found {}", place_, object.type_name());
+    }
+    [[nodiscard]] const std::string& place() const { return place_; }
+
+    const Json* find(const char* key) {
+        known_.insert(key);
+        const auto found = object_.find(key);
+        return found == object_.end() ? nullptr : &*found;
+    }
+    const Json& need(const char* key) {
+        if (const Json* value = find(key)) return *value;
+        refuse("{}: \"{}\" is missing", place_, key);
+    }
+
+    double number(const char* key) { return number_of(need(key), key); }
+    double number(const char* key, double otherwise) {
+        const Json* value = find(key);
+        return value ? number_of(*value, key) : otherwise;
+    }
+    uint64_t whole(const char* key, uint64_t most) { return whole_of(need(key), key, most); }
+    uint64_t whole(const char* key, uint64_t most, uint64_t otherwise) {
+        const Json* value = find(key);
+        return value ? whole_of(*value, key, most) : otherwise;
+    }
+    bool truth(const char* key) {
+        const Json& value = need(key);
+        if (!value.is_boolean()) refuse("{}: \"{}\" must be true or false, found {}", place_, key, value.type_name());
+        return value.get<bool>();
+    }
+    std::string text(const char* key) { return text_of(need(key), key); }
+    std::string text_of(const Json& value, const char* key) const {
+        if (!value.is_string()) refuse("{}: \"{}\" must be a text, found {}", place_, key, value.type_name());
+        return value.get<std::string>();
+    }
+    double number_of(const Json& value, const std::string& what) const {
+        if (!value.is_number()) refuse("{}: \"{}\" must be a number, found {}", place_, what, value.type_name());
+        const double number = value.get<double>();
+        if (!std::isfinite(number)) refuse("{}: \"{}\" must be a finite number", place_, what);
+        return number;
+    }
+    const Json& list(const char* key) {
+        const Json& value = need(key);
+        if (!value.is_array()) refuse("{}: \"{}\" must be a list, found {}", place_, key, value.type_name());
+        return value;
+    }
+
+    void finish() const {
+        for (const auto& [key, value] : object_.items()) {
+            if (known_.count(key) != 0) continue;
+            std::string known;
+            for (const std::string& name : known_) known += (known.empty() ? "" : ", ") + name;
+            refuse("{}: unknown key \"{}\" (known: {})", place_, key, known);
+        }
+    }
+
+  private:
+    uint64_t whole_of(const Json& value, const char* key, uint64_t most) const {
+        if (!value.is_number_integer())
+            refuse("{}: \"{}\" must be a whole number, found {}", place_, key, value.is_number() ? value.dump() : value.type_name());
+        if (!value.is_number_unsigned() || value.get<uint64_t>() > most)
+            refuse("{}: \"{}\" is {}, must be 0 … {}", place_, key, value.dump(), most);
+        return value.get<uint64_t>();
+    }
+
+    const Json& object_;
+    std::string place_;
+    std::set<std::string> known_;
+};
+
+constexpr uint64_t kMaxU32 = 0xffffffffu;
+constexpr uint64_t kMaxId = uint64_t(1) << 62;
+constexpr std::pair<const char*, SculptMode> kModes[] = {{"raise", SculptMode::raise},
+                                                         {"lower", SculptMode::lower},
+                                                         {"smooth", SculptMode::smooth},
+                                                         {"flatten", SculptMode::flatten}};
+
+std::vector<glm::dvec2> read_dabs(Fields& fields) {
+    std::vector<glm::dvec2> dabs;
+    for (const Json& dab : fields.list("dabs")) {
+        if (!dab.is_array() || dab.size() != 2) refuse("{}: dab {} must be [x, y]", fields.place(), dabs.size());
+        const std::string what = fmt::format("dabs[{}]", dabs.size());
+        dabs.emplace_back(fields.number_of(dab[0], what), fields.number_of(dab[1], what));
+    }
+    return dabs;
+}
+
+Json dabs_json(const std::vector<glm::dvec2>& dabs) {
+    Json list = Json::array();
+    for (const glm::dvec2& dab : dabs) list.push_back({dab.x, dab.y});
+    return list;
+}
+
+SculptCommand read_sculpt(Fields& fields) {
+    SculptCommand c;
+    const std::string mode = fields.text("mode");
+    bool found = false;
+    for (const auto& [name, value] : kModes)
+        if (mode == name) c.mode = value, found = true;
+    if (!found) refuse("sculpt: unknown mode \"{}\" (known: raise, lower, smooth, flatten)", mode);
+    c.dabs = read_dabs(fields);
+    c.radius_m = fields.number("radius_m", c.radius_m);
+    if (fields.find("strength") && fields.find("strength_m")) refuse("sculpt: give \"strength\" or \"strength_m\", not both");
+    c.strength = fields.number("strength_m", fields.number("strength", c.strength));
+    c.hardness = fields.number("hardness", c.hardness);
+    c.target_m = c.mode == SculptMode::flatten ? fields.number("target_m") : fields.number("target_m", 0);
+    return c;
+}
+
+PaintCommand read_paint(Fields& fields) {
+    PaintCommand c;
+    c.dabs = read_dabs(fields);
+    c.radius_m = fields.number("radius_m", c.radius_m);
+    if (const Json* layer = fields.find("layer")) c.layer = fields.text_of(*layer, "layer");
+    if (const Json* tint = fields.find("tint")) {
+        if (!tint->is_array() || tint->size() != 3) refuse("paint: \"tint\" must be [red, green, blue]");
+        c.tint = glm::dvec3(fields.number_of((*tint)[0], "tint"), fields.number_of((*tint)[1], "tint"),
+                            fields.number_of((*tint)[2], "tint"));
+    }
+    c.strength = fields.number("strength", c.strength);
+    c.hardness = fields.number("hardness", c.hardness);
+    c.min_slope_rad = fields.number("min_slope_rad", c.min_slope_rad);
+    c.max_slope_rad = fields.number("max_slope_rad", c.max_slope_rad);
+    c.seed = uint32_t(fields.whole("seed", kMaxU32, 0));
+    return c;
+}
+
+Crater read_crater(Fields& fields) {
+    Crater crater;
+    crater.x_m = fields.number("x");
+    crater.y_m = fields.number("y");
+    crater.radius_m = fields.number("radius_m", crater.radius_m);
+    crater.depth_m = fields.number("depth_m", crater.depth_m);
+    crater.seed = uint32_t(fields.whole("seed", kMaxU32, 0));
+    return crater;
+}
+
+void write_crater(Json& json, const Crater& crater) {
+    json["x"] = crater.x_m;
+    json["y"] = crater.y_m;
+    json["radius_m"] = crater.radius_m;
+    json["depth_m"] = crater.depth_m;
+    json["seed"] = crater.seed;
+}
+
+// What a print does not say itself comes from `shared`.
+Footprint read_print(Fields& fields, const Footprint& shared) {
+    Footprint print;
+    print.x_m = fields.number("x");
+    print.y_m = fields.number("y");
+    print.heading_rad = fields.number("heading_rad", 0);
+    print.foot = int(fields.whole("foot", 1, 0));
+    print.length_m = fields.number("length_m", shared.length_m);
+    print.depth_m = fields.number("depth_m", shared.depth_m);
+    print.seed = uint32_t(fields.whole("seed", kMaxU32, shared.seed));
+    return print;
+}
+
+void write_print(Json& json, const Footprint& print) {
+    json["x"] = print.x_m;
+    json["y"] = print.y_m;
+    json["heading_rad"] = print.heading_rad;
+    json["foot"] = print.foot;
+}
+
+FootprintsCommand read_footprints(Fields& fields) {
+    FootprintsCommand c;
+    Footprint shared;
+    shared.length_m = fields.number("length_m", shared.length_m);
+    shared.depth_m = fields.number("depth_m", shared.depth_m);
+    shared.seed = uint32_t(fields.whole("seed", kMaxU32, 0));
+    for (const Json& json : fields.list("prints")) {
+        Fields print(json, fmt::format("footprints: print {}", c.prints.size()));
+        c.prints.push_back(read_print(print, shared));
+        print.finish();
+        ++shared.seed;
+    }
+    return c;
+}
+
+void write(Json& json, const SculptCommand& c) {
+    json["cmd"] = "sculpt";
+    for (const auto& [name, value] : kModes)
+        if (c.mode == value) json["mode"] = name;
+    json["dabs"] = dabs_json(c.dabs);
+    json["radius_m"] = c.radius_m;
+    json[c.mode == SculptMode::raise || c.mode == SculptMode::lower ? "strength_m" : "strength"] = c.strength;
+    json["hardness"] = c.hardness;
+    if (c.mode == SculptMode::flatten) json["target_m"] = c.target_m;
+}
+
+void write(Json& json, const PaintCommand& c) {
+    json["cmd"] = "paint";
+    json["dabs"] = dabs_json(c.dabs);
+    json["radius_m"] = c.radius_m;
+    if (c.layer) json["layer"] = *c.layer;
+    if (c.tint) json["tint"] = {c.tint->x, c.tint->y, c.tint->z};
+    json["strength"] = c.strength;
+    json["hardness"] = c.hardness;
+    json["min_slope_rad"] = c.min_slope_rad;
+    json["max_slope_rad"] = c.max_slope_rad;
+    json["seed"] = c.seed;
+}
+
+void write(Json& json, const CraterCommand& c) {
+    json["cmd"] = "crater";
+    write_crater(json, c.crater);
+}
+
+void write(Json& json, const FootprintsCommand& c) {
+    json["cmd"] = "footprints";
+    Footprint shared = c.prints.empty() ? Footprint() : c.prints[0];
+    json["length_m"] = shared.length_m;
+    json["depth_m"] = shared.depth_m;
+    json["seed"] = shared.seed;
+    json["prints"] = Json::array();
+    for (const Footprint& print : c.prints) {
+        Json& one = json["prints"].emplace_back(Json::object());
+        write_print(one, print);
+        if (print.length_m != shared.length_m) one["length_m"] = print.length_m;
+        if (print.depth_m != shared.depth_m) one["depth_m"] = print.depth_m;
+        if (print.seed != shared.seed) one["seed"] = print.seed;
+        ++shared.seed;
+    }
+}
+
+void write(Json& json, const SetOperatorCommand& c) {
+    json["cmd"] = "operator";
+    json["id"] = c.id;
+    json["enabled"] = c.enabled;
+}
+void write(Json& json, const RemoveOperatorCommand& c) {
+    json["cmd"] = "remove";
+    json["id"] = c.id;
+}
+void write(Json& json, const UndoCommand&) {
+    json["cmd"] = "undo";
+}
+void write(Json& json, const RedoCommand&) {
+    json["cmd"] = "redo";
+}
+
+CommandBody read_body(const std::string& name, Fields& fields) {
+    if (name == "sculpt") return read_sculpt(fields);
+    if (name == "paint") return read_paint(fields);
+    if (name == "crater") return CraterCommand{read_crater(fields)};
+    if (name == "footprints") return read_footprints(fields);
+    if (name == "operator") {
+        SetOperatorCommand c;
+        c.id = fields.whole("id", kMaxId);
+        c.enabled = fields.truth("enabled");
+        return c;
+    }
+    if (name == "remove") return RemoveOperatorCommand{fields.whole("id", kMaxId)};
+    if (name == "undo") return UndoCommand{};
+    if (name == "redo") return RedoCommand{};
+    refuse("unknown command \"{}\" (known: sculpt, paint, crater, footprints, operator, remove, undo, redo)", name);
+}
+
+// Runs a reader over the parsed text; whatever is thrown becomes an error.
+template <typename T, typename Read>
+Result<T> parse(std::string_view text, Read&& read) {
+    try {
+        return read(Json::parse(text));
+    } catch (const Refused& refused) {
+        return Error{refused.message};
+    } catch (const Json::parse_error& bad) {
+        return error("not valid JSON, at byte {}", bad.byte);
+    } catch (const std::exception& bad) {
+        return error("not valid JSON: {}", bad.what());
+    }
+}
+
+// Texts that are not UTF-8 (layer names from C++) must not throw.
+std::string dump(const Json& json) {
+    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
+
+} // namespace
+
+Result<Command> parse_command(std::string_view json_line) {
+    auto command = parse<Command>(json_line, [](const Json& json) {
+        Fields start(json, "a command");
+        const std::string name = start.text("cmd");
+        Fields fields(json, name);
+        fields.find("cmd");
+        Command result;
+        result.group = fields.whole("group", kMaxId, 0);
+        result.body = read_body(name, fields);
+        fields.finish();
+        return result;
+    });
+    if (!command.ok()) return command;
+    const Status status = check_command(*command);
+    if (!status.ok()) return status.error();
+    return command;
+}
+
+std::string to_json(const Command& command) {
+    Json json;
+    std::visit([&](const auto& body) { write(json, body); }, command.body);
+    if (command.group != 0) json["group"] = command.group;
+    return dump(json);
+}
+
+std::string operator_json(const Operator& op) {
+    Json json;
+    json["order"] = op.order;
+    json["enabled"] = op.enabled;
+    if (const auto* crater = std::get_if<Crater>(&op.shape)) {
+        json["kind"] = "crater";
+        write_crater(json, *crater);
+    } else {
+        const auto& print = std::get<Footprint>(op.shape);
+        json["kind"] = "footprint";
+        write_print(json, print);
+        json["length_m"] = print.length_m;
+        json["depth_m"] = print.depth_m;
+        json["seed"] = print.seed;
+    }
+    return dump(json);
+}
+
+Result<Operator> parse_operator(uint64_t id, std::string_view text) {
+    auto op = parse<Operator>(text, [&](const Json& json) {
+        Fields fields(json, fmt::format("operator {}", id));
+        Operator result;
+        result.id = id;
+        result.order = fields.whole("order", kMaxId);
+        result.enabled = fields.truth("enabled");
+        const std::string kind = fields.text("kind");
+        if (kind == "crater")
+            result.shape = read_crater(fields);
+        else if (kind == "footprint")
+            result.shape = read_print(fields, {});
+        else
+            refuse("operator {}: unknown kind \"{}\" (known: crater, footprint)", id, kind);
+        fields.finish();
+        return result;
+    });
+    if (!op.ok()) return op;
+    Command same_ranges;
+    if (const auto* crater = std::get_if<Crater>(&op->shape))
+        same_ranges.body = CraterCommand{*crater};
+    else
+        same_ranges.body = FootprintsCommand{{std::get<Footprint>(op->shape)}};
+    const Status status = check_command(same_ranges);
+    if (!status.ok()) return error("operator {}: {}", id, status.message());
+    return op;
+}
+
+} // namespace loam

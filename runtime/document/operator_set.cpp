@@ -1,0 +1,40 @@
+#include "runtime/document/operator_set.h"
+
+#include <algorithm>
+
+namespace loam {
+
+void OperatorSet::set(const Operator& op) {
+    remove(op.id);
+    auto owned = std::make_unique<Operator>(op);
+    height_.add(owned.get(), op.height_bounds());
+    index_.add(owned.get(), op.index_bounds());
+    texture_.add(owned.get(), op.texture_bounds());
+    by_id_.emplace(op.id, std::move(owned));
+}
+
+void OperatorSet::remove(uint64_t id) {
+    const auto found = by_id_.find(id);
+    if (found == by_id_.end()) return;
+    const Operator* op = found->second.get();
+    height_.remove(op, op->height_bounds());
+    index_.remove(op, op->index_bounds());
+    texture_.remove(op, op->texture_bounds());
+    by_id_.erase(found);
+}
+
+const Operator* OperatorSet::find(uint64_t id) const {
+    const auto found = by_id_.find(id);
+    return found == by_id_.end() ? nullptr : found->second.get();
+}
+
+std::vector<Operator> OperatorSet::sorted() const {
+    std::vector<Operator> all;
+    all.reserve(by_id_.size());
+    for (const auto& [id, op] : by_id_) all.push_back(*op);
+    std::sort(all.begin(), all.end(),
+              [](const Operator& a, const Operator& b) { return a.order != b.order ? a.order < b.order : a.id < b.id; });
+    return all;
+}
+
+} // namespace loam

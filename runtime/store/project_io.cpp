@@ -1,0 +1,249 @@
+// project.toml in and out. The only file that sees toml++; its exceptions end here.
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <map>
+#include <sstream>
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include "runtime/store/project.h"
+
+#if defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#endif
+#define TOML_HEADER_ONLY 1
+#include <toml++/toml.h>
+#if defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
+namespace loam {
+
+namespace {
+
+// Thrown inside this file only and turned into an Error by load_project.
+struct Refused {
+    std::string message;
+    toml::source_position where;
+};
+
+template <typename... Args>
+[[noreturn]] void refuse(const toml::node& node, fmt::format_string<Args...> format, Args&&... args) {
+    throw Refused{fmt::format(format, std::forward<Args>(args)...), node.source().begin};
+}
+
+using Readers = std::map<std::string, std::function<void(const toml::node&)>, std::less<>>;
+
+// Calls the reader of every key; a key without one is refused.
+void read_table(const toml::table& table, const char* place, const Readers& readers) {
+    for (const auto& [key, node] : table) {
+        const auto reader = readers.find(std::string_view(key.str()));
+        if (reader == readers.end()) {
+            std::string known;
+            for (const auto& [name, unused] : readers) known += (known.empty() ? "" : ", ") + name;
+            throw Refused{fmt::format("unknown key \"{}\" in {} (known: {})", std::string_view(key.str()), place, known),
+                          key.source().begin};
+        }
+        reader->second(node);
+    }
+}
+
+const toml::table& table_of(const toml::node& node, const char* name) {
+    if (const auto* table = node.as_table()) return *table;
+    refuse(node, "{} must be a table", name);
+}
+
+std::string string_of(const toml::node& node, const char* name) {
+    if (const auto* text = node.as_string()) return text->get();
+    refuse(node, "{} must be a text in quotes", name);
+}
+
+double number_of(const toml::node& node, const char* name, double low, double high) {
+    double value = 0;
+    if (const auto* whole = node.as_integer())
+        value = double(whole->get());
+    else if (const auto* real = node.as_floating_point())
+        value = real->get();
+    else
+        refuse(node, "{} must be a number", name);
+    if (!(std::isfinite(value) && value >= low && value <= high))
+        refuse(node, "{} is {}, must be {} … {}", name, value, low, high);
+    return value;
+}
+
+int64_t whole_of(const toml::node& node, const char* name, int64_t low, int64_t high) {
+    const auto* whole = node.as_integer();
+    if (!whole) refuse(node, "{} must be a whole number", name);
+    if (whole->get() < low || whole->get() > high)
+        refuse(node, "{} is {}, must be {} … {}", name, whole->get(), low, high);
+    return whole->get();
+}
+
+LayerEntry layer_of(const toml::node& node) {
+    LayerEntry layer;
+    const toml::table& table = table_of(node, "layer");
+    read_table(table, "[[layer]]",
+               {{"name", [&](const toml::node& n) { layer.name = string_of(n, "name"); }},
+                {"file", [&](const toml::node& n) { layer.file = string_of(n, "file"); }},
+                {"tile_m", [&](const toml::node& n) { layer.tile_m = number_of(n, "tile_m", 0.01, 10000); }}});
+    if (layer.name.empty()) refuse(node, "a layer needs a name");
+    return layer;
+}
+
+ProjectSettings settings_of(const toml::table& root) {
+    ProjectSettings s;
+    bool has_samples = false, has_refine = false;
+    const auto read_terrain = [&](const toml::node& node) {
+        const auto samples = [&](const toml::node& n) {
+            const auto* pair = n.as_array();
+            if (!pair || pair->size() != 2) refuse(n, "height_samples must be [east, north], two whole numbers");
+            s.height_samples_x = int(whole_of(*pair->get(0), "height_samples (x)", 2, 1 << 17));
+            s.height_samples_y = int(whole_of(*pair->get(1), "height_samples (y)", 2, 1 << 17));
+            has_samples = true;
+        };
+        const auto refine = [&](const toml::node& n) {
+            s.refine = int(whole_of(n, "refine", 0, 6));
+            has_refine = true;
+        };
+        read_table(table_of(node, "terrain"), "[terrain]",
+                   {{"height_samples", samples},
+                    {"refine", refine},
+                    {"height_spacing_m",
+                     [&](const toml::node& n) { s.height_spacing_m = number_of(n, "height_spacing_m", 0.01, 1000); }},
+                    {"index_spacing_m",
+                     [&](const toml::node& n) { s.index_spacing_m = number_of(n, "index_spacing_m", 0.25, 64); }},
+                    {"default_height_mm",
+                     [&](const toml::node& n) {
+                         s.default_height_mm = int32_t(whole_of(n, "default_height_mm", -16384000, 16384000));
+                     }},
+                    {"default_layer",
+                     [&](const toml::node& n) { s.default_layer = uint16_t(whole_of(n, "default_layer", 0, 65535)); }}});
+    };
+    const auto read_sun = [&](const toml::node& node) {
+        read_table(
+            table_of(node, "sun"), "[sun]",
+            {{"azimuth_rad", [&](const toml::node& n) { s.sun_azimuth_rad = number_of(n, "azimuth_rad", -100, 100); }},
+             {"elevation_rad",
+              [&](const toml::node& n) { s.sun_elevation_rad = number_of(n, "elevation_rad", -1.5708, 1.5708); }}});
+    };
+    const auto read_air = [&](const toml::node& node) {
+        read_table(table_of(node, "air"), "[air]",
+                   {{"haze_per_km", [&](const toml::node& n) { s.haze_per_km = number_of(n, "haze_per_km", 0, 100); }}});
+    };
+    const auto read_roles = [&](const toml::node& node) {
+        read_table(table_of(node, "roles"), "[roles]",
+                   {{"scorched", [&](const toml::node& n) { s.roles.scorched = string_of(n, "scorched"); }},
+                    {"broken", [&](const toml::node& n) { s.roles.broken = string_of(n, "broken"); }}});
+    };
+    const auto read_layers = [&](const toml::node& node) {
+        const auto* layers = node.as_array();
+        if (!layers) refuse(node, "layer must be a list of tables: [[layer]]");
+        for (const toml::node& layer : *layers) s.layers.push_back(layer_of(layer));
+    };
+    read_table(root, "the project",
+               {{"name", [&](const toml::node& n) { s.name = string_of(n, "name"); }},
+                {"terrain", read_terrain},
+                {"sun", read_sun},
+                {"air", read_air},
+                {"roles", read_roles},
+                {"layer", read_layers}});
+    if (!has_samples) refuse(root, "height_samples is missing in [terrain]");
+    if (!has_refine) s.refine = default_refine(s.height_spacing_m);
+    return s;
+}
+
+std::string toml_text(std::string_view text) {
+    std::string out = "\"";
+    for (const char c : text) {
+        if (c == '"' || c == '\\')
+            out += std::string("\\") + c;
+        else if (uint8_t(c) < 0x20 || c == 0x7f)
+            out += fmt::format("\\u{:04X}", uint8_t(c));
+        else
+            out += c;
+    }
+    return out + "\"";
+}
+
+// The shortest text that reads back as the same number; TOML wants a point or an exponent in a real number.
+std::string toml_real(double value) {
+    std::string text = fmt::format("{}", value);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text;
+}
+
+std::string text_of(const ProjectSettings& s) {
+    std::string out = fmt::format("name = {}\n\n[terrain]\n", toml_text(s.name));
+    out += fmt::format("height_samples = [{}, {}] # east, north\n", s.height_samples_x, s.height_samples_y);
+    out += fmt::format("height_spacing_m = {}\nrefine = {}\n", toml_real(s.height_spacing_m), s.refine);
+    out += fmt::format("index_spacing_m = {}\n", toml_real(s.index_spacing_m));
+    out += fmt::format("default_height_mm = {}\ndefault_layer = {}\n", s.default_height_mm, s.default_layer);
+    out += fmt::format("\n[sun]\nazimuth_rad = {} # clockwise from north\nelevation_rad = {}\n", toml_real(s.sun_azimuth_rad),
+                       toml_real(s.sun_elevation_rad));
+    out += fmt::format("\n[air]\nhaze_per_km = {}\n", toml_real(s.haze_per_km));
+    out += fmt::format("\n[roles]\nscorched = {}\nbroken = {}\n", toml_text(s.roles.scorched), toml_text(s.roles.broken));
+    for (const LayerEntry& layer : s.layers)
+        out += fmt::format("\n[[layer]]\nname = {}\nfile = {}\ntile_m = {}\n", toml_text(layer.name), toml_text(layer.file),
+                           toml_real(layer.tile_m));
+    return out;
+}
+
+Status write_whole(const std::filesystem::path& file, std::string_view text) {
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (descriptor < 0) return error("cannot write {}: {}", file.string(), std::strerror(errno));
+    size_t written = 0;
+    int failure = 0;
+    while (written < text.size() && failure == 0) {
+        const ssize_t step = ::write(descriptor, text.data() + written, text.size() - written);
+        if (step >= 0)
+            written += size_t(step);
+        else if (errno != EINTR)
+            failure = errno;
+    }
+    if (failure == 0 && ::fsync(descriptor) != 0) failure = errno;
+    ::close(descriptor);
+    if (failure != 0) return error("cannot write {}: {}", file.string(), std::strerror(failure));
+    return {};
+}
+
+} // namespace
+
+Result<ProjectSettings> load_project(const std::filesystem::path& folder) {
+    std::error_code failure;
+    if (!std::filesystem::is_directory(folder, failure)) return error("there is no folder {}", folder.string());
+    const std::filesystem::path file = folder / "project.toml";
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) return error("{} cannot be read: {}; is it a project?", file.string(), std::strerror(errno));
+    std::ostringstream text;
+    text << stream.rdbuf();
+    try {
+        const toml::table root = toml::parse(text.view(), file.string());
+        ProjectSettings settings = settings_of(root);
+        const Status status = check_settings(settings);
+        if (!status.ok()) return error("{}: {}", file.string(), status.message());
+        return settings;
+    } catch (const Refused& refused) {
+        return error("{}:{}: {}", file.string(), refused.where.line, refused.message);
+    } catch (const toml::parse_error& bad) {
+        return error("{}:{}: {}", file.string(), bad.source().begin.line, bad.description());
+    } catch (const std::exception& bad) {
+        return error("{}: {}", file.string(), bad.what());
+    }
+}
+
+Status save_project(const std::filesystem::path& folder, const ProjectSettings& settings) {
+    LOAM_TRY(check_settings(settings));
+    const std::filesystem::path file = folder / "project.toml", temporary = folder / "project.toml.new";
+    LOAM_TRY(write_whole(temporary, text_of(settings)));
+    std::error_code failure;
+    std::filesystem::rename(temporary, file, failure);
+    if (failure) return error("cannot replace {}: {}", file.string(), failure.message());
+    return {};
+}
+
+} // namespace loam

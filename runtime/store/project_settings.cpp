@@ -1,0 +1,70 @@
+// Rules of project.toml that hold wherever the settings come from.
+#include <cmath>
+#include <set>
+
+#include "runtime/base/units.h"
+#include "runtime/store/project.h"
+
+namespace loam {
+
+namespace {
+
+constexpr int kMaxSamples = 1 << 17; // 0.125 m over the largest map
+constexpr size_t kMaxLayers = 1024;
+
+Status check_number(const char* name, double value, double low, double high) {
+    if (std::isfinite(value) && value >= low && value <= high) return {};
+    return error("{} is {}, must be {} … {}", name, value, low, high);
+}
+
+bool is_power_of_two(double value) {
+    int exponent = 0;
+    return std::frexp(value, &exponent) == 0.5;
+}
+
+Status check_layer(const LayerEntry& layer, std::set<std::string>& names) {
+    if (layer.name.empty()) return error("a layer has no name");
+    if (!names.insert(layer.name).second) return error("two layers are called \"{}\"; names must be unique", layer.name);
+    const std::filesystem::path file(layer.file);
+    bool climbs = file.is_absolute();
+    for (const auto& part : file) climbs |= part == "..";
+    if (climbs)
+        return error("layer \"{}\": the file \"{}\" is outside the project; give a path relative to it", layer.name, layer.file);
+    const Status tile = check_number("tile_m", layer.tile_m, 0.01, 10000);
+    if (!tile.ok()) return error("layer \"{}\": {}", layer.name, tile.message());
+    return {};
+}
+
+} // namespace
+
+int default_refine(double height_spacing_m) {
+    int refine = 0;
+    while (refine < 6 && height_spacing_m / double(2 << refine) >= 0.25) ++refine;
+    return refine;
+}
+
+Status check_settings(const ProjectSettings& settings) {
+    LOAM_TRY(check_number("height_samples (x)", settings.height_samples_x, 2, kMaxSamples));
+    LOAM_TRY(check_number("height_samples (y)", settings.height_samples_y, 2, kMaxSamples));
+    LOAM_TRY(check_number("height_spacing_m", settings.height_spacing_m, 0.01, 1000));
+    const WorldRect bounds = settings.bounds();
+    if (bounds.width() > kMaxMapSize_m || bounds.height() > kMaxMapSize_m)
+        return error("the map is {} x {} m, the limit is {} m a side", bounds.width(), bounds.height(), kMaxMapSize_m);
+    LOAM_TRY(check_number("refine", settings.refine, 0, 6));
+    LOAM_TRY(check_number("index_spacing_m", settings.index_spacing_m, 0.25, 64));
+    if (!is_power_of_two(settings.index_spacing_m))
+        return error("index_spacing_m is {}, must be a power of two from 0.25 to 64", settings.index_spacing_m);
+    LOAM_TRY(check_number("default_height_mm", settings.default_height_mm, -kHeightLimit_mm, kHeightLimit_mm));
+    if (settings.layers.size() > kMaxLayers)
+        return error("{} layers, the limit is {}", settings.layers.size(), kMaxLayers);
+    if (settings.default_layer >= std::max<size_t>(1, settings.layers.size()))
+        return error("default_layer is {}, there are {} layers", settings.default_layer, settings.layers.size());
+    std::set<std::string> names;
+    for (const LayerEntry& layer : settings.layers) LOAM_TRY(check_layer(layer, names));
+    LOAM_TRY(check_number("azimuth_rad", settings.sun_azimuth_rad, -100, 100));
+    LOAM_TRY(check_number("elevation_rad", settings.sun_elevation_rad, -1.5708, 1.5708));
+    LOAM_TRY(check_number("haze_per_km", settings.haze_per_km, 0, 100));
+    return {};
+}
+
+} // namespace loam

@@ -1,0 +1,81 @@
+// A boot's print, the same in GLSL and C++.
+//
+// Inputs everywhere: `local`: position from the print's middle in units of its length, x to the right of and y along the heading
+// (footprint_local turns an offset in the world); `foot`: 0 left, 1 right. Everything but footprint_sole itself (a distance)
+// is 0 for |local| >= kFootprintReach.
+#ifndef LOAM_FOOTPRINT_MATH_H
+#define LOAM_FOOTPRINT_MATH_H
+#include "shaders/document/noise_math.h"
+LOAM_BEGIN_SHARED
+
+#define kFootprintReach 0.72f // of marks and of the dent, in lengths
+#define kFootprintRim 0.16f   // width of the raised rim outside the sole, in lengths
+
+// `offset`: from the print's middle, east and north, in units of its length; `heading`: (sin, cos) of the heading clockwise
+// from north, which is the direction of the toes.
+LOAM_INLINE vec2 footprint_local(vec2 offset, vec2 heading) {
+    return vec2(offset.x * heading.y - offset.y * heading.x, offset.x * heading.x + offset.y * heading.y);
+}
+
+// Maximum with a rounded corner of size k.
+LOAM_INLINE float footprint_join(float a, float b, float k) {
+    float h = k - abs(a - b);
+    h = h > 0.0f ? h : 0.0f;
+    return (a > b ? a : b) + h * h / (4.0f * k);
+}
+
+LOAM_INLINE float footprint_disc(vec2 p, float x, float y, float radius) {
+    float dx = p.x - x;
+    float dy = p.y - y;
+    return radius - sqrt(dx * dx + dy * dy);
+}
+
+// Signed coverage of the sole: about the distance to its outline in lengths, positive inside (up to about 0.17).
+LOAM_INLINE float footprint_sole(vec2 local, int foot) {
+    vec2 p = vec2(foot == 0 ? -local.x : local.x, local.y); // a right foot: the inner side is at negative x
+    float heel = footprint_disc(p, 0.005f, -0.365f, 0.115f);
+    float ball = footprint_disc(p, 0.0f, 0.16f, 0.165f);
+    float toes = footprint_disc(p, -0.025f, 0.33f, 0.135f);
+    // The waist: a capsule between heel and ball.
+    float along = p.y < -0.36f ? -0.36f : (p.y > 0.14f ? 0.14f : p.y);
+    float waist = footprint_disc(p, 0.025f, along, 0.095f);
+    return footprint_join(footprint_join(heel, waist, 0.05f), footprint_join(ball, toes, 0.06f), 0.05f);
+}
+
+// Tread: 0 in the grooves, 1 under the lugs; 0 outside the sole and in the gap before the heel.
+LOAM_INLINE float footprint_tread(vec2 local, int foot) {
+    float inside = noise_ramp(0.012f, 0.03f, footprint_sole(local, foot));
+    float side = local.x < 0.0f ? -local.x : local.x;
+    // Chevrons across the sole, straight bars on the heel; triangle waves of 13 and 16 a length.
+    float heel = 1.0f - noise_ramp(-0.23f, -0.21f, local.y);
+    float front = noise_ramp(-0.15f, -0.13f, local.y);
+    float chevron = fract((local.y + 0.7f * side) * 13.0f + 0.25f);
+    float bar = fract(local.y * 16.0f);
+    chevron = chevron < 0.5f ? 2.0f * chevron : 2.0f - 2.0f * chevron;
+    bar = bar < 0.5f ? 2.0f * bar : 2.0f - 2.0f * bar;
+    return inside * (front * noise_ramp(0.3f, 0.55f, chevron) + heel * noise_ramp(0.3f, 0.55f, bar));
+}
+
+// Height change in units of the print's depth: -1 under the sole, up to +0.2 on the rim, 0 from kFootprintRim outside it on.
+LOAM_INLINE float footprint_height(vec2 local, int foot, uint seed) {
+    float r2 = local.x * local.x + local.y * local.y;
+    if (r2 >= kFootprintReach * kFootprintReach) return 0.0f;
+    float sole = footprint_sole(local, foot);
+    float dent = noise_ramp(0.0f, 0.06f, sole);
+    // The rim is a bump over -kFootprintRim … 0 of the signed coverage, uneven like pushed earth.
+    float u = -sole / kFootprintRim;
+    u = u < 0.0f ? 0.0f : (u > 1.0f ? 1.0f : u);
+    float bump = 16.0f * u * u * (1.0f - u) * (1.0f - u);
+    float uneven = 0.14f + 0.06f * noise_value(local * 9.0f, noise_hash(seed + 41u));
+    return bump * uneven - dent * (1.0f - 0.2f * (1.0f - footprint_tread(local, foot)));
+}
+
+// How much the ground is pressed and darkened here, 0 … 1, for a decal.
+LOAM_INLINE float footprint_shade(vec2 local, int foot) {
+    float r2 = local.x * local.x + local.y * local.y;
+    if (r2 >= kFootprintReach * kFootprintReach) return 0.0f;
+    return noise_ramp(-0.01f, 0.02f, footprint_sole(local, foot)) * (0.55f + 0.45f * footprint_tread(local, foot));
+}
+
+LOAM_END_SHARED
+#endif
