@@ -24,8 +24,8 @@ LayerTextures layer_sand(uint32_t seed, int size) {
     Canvas canvas(size);
     constexpr float kMm = 1.0f / 2000;
     canvas.fill([&](float u, float v) {
-        const float bend = 1.35f * noise_xy(u * 3, v * 6, seed + 1, 3, 6) +
-                           0.5f * noise_xy(u * 7, v * 14, seed + 2, 7, 14);
+        const float bend = 1.0f * noise_xy(u * 3, v * 4, seed + 1, 3, 4) +
+                           0.35f * noise_xy(u * 6, v * 9, seed + 2, 6, 9);
         const float tall = 0.45f + 0.55f * smooth_step(-0.6f, 0.5f, noise_xy(u * 5, v * 5, seed + 3, 5, 5));
         const float crest = ripples(v * 21 + bend), small = ripples(v * 55 + u * 3 + 1.7f * bend + 0.8f * noise_xy(u * 12, v * 20, seed + 4, 12, 20));
         const float soft = fractal(u * 6, v * 6, seed + 5, 4, 0.5f, 6);

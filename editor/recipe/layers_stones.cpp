@@ -36,10 +36,10 @@ LayerTextures layer_dirt(uint32_t seed, int size) {
     for (int k = 0; k < 2600; ++k) {
         const float roll = chance.unit(), radius = (2.5f + 17 * roll * roll * roll * roll) * kMm;
         const float warm = chance.unit();
-        const glm::vec3 colour = (glm::vec3(0.22f, 0.19f, 0.155f) * warm + glm::vec3(0.17f, 0.165f, 0.16f) * (1 - warm)) * chance.range(0.65f, 1.35f);
+        const glm::vec3 colour = (glm::vec3(0.22f, 0.19f, 0.155f) * warm + glm::vec3(0.17f, 0.152f, 0.13f) * (1 - warm)) * chance.range(0.65f, 1.35f);
         canvas.draw(Canvas::Stone{.x = chance.unit(), .y = chance.unit(), .radius = radius, .bottom = chance.range(-4, 6) * kMm,
                                   .thickness = radius * chance.range(0.4f, 0.8f), .colour = colour, .gloss = 0.28f,
-                                  .roundness = chance.unit() < 0.6f ? 1.0f : 0.0f, .seed = hash(seed, static_cast<uint32_t>(k))});
+                                  .roundness = chance.unit() < 0.3f ? 1.0f : 0.0f, .seed = hash(seed, static_cast<uint32_t>(k))});
     }
     for (int k = 0; k < 420; ++k) { // straw and root fibres
         const glm::vec3 colour = glm::vec3(0.24f, 0.18f, 0.10f) * chance.range(0.5f, 1.3f);
@@ -67,7 +67,7 @@ LayerTextures layer_scree(uint32_t seed, int size) {
             const float radius = chance.range(kSizes[s].low_mm, kSizes[s].high_mm) * kMm;
             const float lichen = chance.unit(), warm = chance.unit();
             glm::vec3 colour = glm::vec3(0.27f, 0.265f, 0.255f) + (glm::vec3(0.30f, 0.245f, 0.185f) - glm::vec3(0.27f, 0.265f, 0.255f)) * warm * warm;
-            if (lichen > 0.93f) colour = {0.25f, 0.25f, 0.16f};
+            if (lichen > 0.93f) colour = {0.265f, 0.26f, 0.20f};
             canvas.draw(Canvas::Stone{.x = chance.unit(), .y = chance.unit(), .radius = radius,
                                       .bottom = radius * chance.range(-0.35f, 0.15f) + static_cast<float>(s) * 4 * kMm,
                                       .thickness = radius * chance.range(0.45f, 0.85f), .colour = colour * chance.range(0.62f, 1.3f),
@@ -88,14 +88,14 @@ LayerTextures layer_rock(uint32_t seed, int size) {
         glm::vec3 colour(0.27f, 0.262f, 0.25f);
         for (int s = 0; s < 4; ++s) {
             static constexpr int kAlong[4] = {3, 7, 20, 52}, kUp[4] = {9, 20, 40, 80};
-            static constexpr float kPush[4] = {150, 62, 22, 9}, kTilt[4] = {0.30f, 0.36f, 0.40f, 0.4f}, kOpen[4] = {26, 14, 5, 2};
+            static constexpr float kPush[4] = {150, 62, 22, 9}, kTilt[4] = {0.30f, 0.36f, 0.40f, 0.4f}, kOpen[4] = {30, 13, 4, 1.5f};
             const float x = wu * static_cast<float>(kAlong[s]), y = wv * static_cast<float>(kUp[s]);
             const Cell cell = cellular_xy(x, y, seed + 40u + static_cast<uint32_t>(s), kAlong[s], kUp[s]);
             const float push = unit_from_hash(cell.id) - 0.5f;
             const float tilt_x = unit_from_hash(hash(cell.id, 1)) - 0.5f, tilt_y = unit_from_hash(hash(cell.id, 2)) - 0.62f;
             height += kPush[s] * push + 2 * kTilt[s] * (cell.to_x * tilt_x * 4000.0f / static_cast<float>(kAlong[s]) * 0.5f + cell.to_y * tilt_y * 4000.0f / static_cast<float>(kUp[s]));
             const float width = 0.03f + 0.06f * unit_from_hash(hash(cell.id, 3));
-            const float open = smooth_step(width, 0.0f, cell.border) * smooth_step(-0.5f, 0.35f, noise(u * 9, v * 9, seed + 60u + static_cast<uint32_t>(s), 9));
+            const float open = smooth_step(width, 0.0f, cell.border) * smooth_step(-0.1f, 0.5f, noise(u * 7, v * 7, seed + 60u + static_cast<uint32_t>(s), 7));
             height -= kOpen[s] * open;
             crack = std::max(crack, open * (s < 3 ? 1.0f : 0.6f));
             tone += (0.20f - 0.035f * static_cast<float>(s)) * (unit_from_hash(hash(cell.id, 4)) - 0.5f);
@@ -103,15 +103,15 @@ LayerTextures layer_rock(uint32_t seed, int size) {
         const float bedding = noise_xy(wu * 8, wv * 110, seed + 7, 8, 110);
         const float pits = fractal(u * 70, v * 70, seed + 8, 5, 0.65f, 70);
         height += 5 * bedding + 10 * pits;
-        const float rust = smooth_step(0.1f, 0.7f, fractal(wu * 6, wv * 6, seed + 9, 5, 0.6f, 6));
-        colour += (glm::vec3(0.30f, 0.235f, 0.165f) - colour) * rust * 0.6f;
+        const float rust = smooth_step(0.15f, 0.9f, fractal(wu * 6, wv * 6, seed + 9, 5, 0.6f, 6));
+        colour += (glm::vec3(0.30f, 0.235f, 0.165f) - colour) * rust * 0.45f;
         const float lichen = smooth_step(0.35f, 0.6f, fractal(u * 20, v * 20, seed + 10, 5, 0.65f, 20));
-        colour += (glm::vec3(0.33f, 0.34f, 0.28f) - colour) * lichen * 0.45f;
+        colour += (glm::vec3(0.33f, 0.34f, 0.28f) - colour) * lichen * 0.35f;
         const float grain = unit_from_hash(hash(static_cast<uint32_t>(u * 2048), static_cast<uint32_t>(v * 2048), seed)) - 0.5f;
         return Canvas::Texel{height * kMm, 0.3f - 0.1f * lichen,
-                             colour * std::max(0.12f, (1 + tone + 0.22f * pits + 0.10f * bedding + 0.16f * grain) * (1 - 0.62f * crack))};
+                             colour * std::max(0.12f, (1 + tone + 0.22f * pits + 0.10f * bedding + 0.16f * grain) * (1 - 0.35f * crack))};
     });
-    return finished(canvas, {.relief = 0.8f, .cavity = 0.6f, .mean_albedo = {0.245f, 0.236f, 0.218f}});
+    return finished(canvas, {.relief = 0.8f, .cavity = 0.55f, .flatten = 0.35f, .mean_albedo = {0.245f, 0.236f, 0.218f}});
 }
 
 } // namespace loam::recipe

@@ -29,12 +29,13 @@ Status write_index(BulkWriter& writer, const IndexRequest& request, const Progre
 
 } // namespace
 
-Status make_project(const std::filesystem::path& folder, const RecipeRequest& request, const Progress& progress) {
+Status make_project(const std::filesystem::path& folder, const RecipeRequest& request, const Progress& progress,
+                    int layer_size_texels) {
     auto maps = make_ground(request, part_of(progress, 0, 0.45));
     if (!maps) return maps.error();
 
     LOAM_TRY(step_progress(progress, 0.45, "making layers"));
-    auto layers = make_layers_for(folder, request.seed);
+    auto layers = make_layers_for(folder, request.seed, layer_size_texels);
     if (!layers) return layers.error();
 
     LOAM_TRY(step_progress(progress, 0.65, "writing heights"));

@@ -22,7 +22,9 @@ Result<Shape> shape_hills(const ShapeRequest& request, const Progress& progress)
     for (; level >= 0; --level) {
         const int size = ((request.size - 1) >> level) + 1;
         const double spacing = request.side_m() / (size - 1);
+        const bool finer = size != height.size;
         height = resampled(height, size);
+        if (finer && level >= 1) bend(height, seed + static_cast<uint32_t>(level), level == 2 ? 1.0f : 0.3f);
         const Grid strength = filled_by(size, [&](float u, float v) {
             return 1.0f + 0.4f * fractal(u * waves * 3, v * waves * 3, seed + 3, 4);
         });
@@ -32,8 +34,9 @@ Result<Shape> shape_hills(const ShapeRequest& request, const Progress& progress)
             const Drainage drainage = route(height, spacing, Outlets::all_edges,
                                             hash(seed, static_cast<uint32_t>(level * 1000 + s)) | 1u);
             incise(height, drainage, spacing,
-                   {.uplift_m = 2.2f, .rate = 0.14f, .steepest = 0.7f, .strength = &strength});
-            creep(height, spacing, level == 3 ? 40.0f : 4.0f); // m²: rounds crests over some 30 m in the coarse run
+                   {.uplift_m = level >= 2 ? 3.0f : 0.0f, .rate = level >= 2 ? 0.14f : 0.004f, .steepest = 0.7f,
+                     .strength = &strength});
+            creep(height, spacing, level == 3 ? 90.0f : level == 2 ? 40.0f : 6.0f); // m²: rounds crests over some 30 m in the coarse run
         }
     }
     Shape shape{std::move(height), Grid(request.size)};

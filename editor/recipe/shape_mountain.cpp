@@ -27,19 +27,6 @@ int level_size(int size, int level) {
     return std::max((size - 1) >> level, 1) + 1;
 }
 
-// Bends the ground sideways by up to some 3 % of the map: streams that grew along the eight directions of the coarse grid
-// become curves, and the finer grid's incision puts them in order again.
-void bend(Grid& height_m, uint32_t seed, float strength) {
-    const Grid straight = height_m;
-    const float last = static_cast<float>(height_m.size - 1);
-    height_m = filled_by(height_m.size, [&](float u, float v) {
-        const float finer = 2.0f / (0.5f + strength);
-        const float su = strength * 0.028f * fractal(u * 6 * finer, v * 6 * finer, seed + 31, 3);
-        const float sv = strength * 0.028f * fractal(u * 6 * finer, v * 6 * finer, seed + 37, 3);
-        return straight.bilinear((u + su) * last, (v + sv) * last);
-    });
-}
-
 Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const Progress& progress) {
     int coarsest = 3;
     while (coarsest > 0 && level_size(request.size, coarsest) < 33) --coarsest;
@@ -65,25 +52,33 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
             return fractal(u * frequency, v * frequency, request.seed + 900u + static_cast<uint32_t>(level), 4, 0.6f);
         });
         for (size_t c = 0; c < rough.v.size(); ++c)
-            shape.height_m.v[c] += rough.v[c] * dx * (0.03f + std::min(slope.v[c], 1.2f) * (level == 0 ? 0.9f : 1.6f));
+            shape.height_m.v[c] += rough.v[c] * dx * (0.035f + std::min(slope.v[c], 1.2f) * (level == 0 ? 0.26f : level == 3 ? 1.6f : 0.9f));
 
         const int steps = coarsest == 0 ? 60 : kSteps[level];
-        Incision incision{.uplift_m = 0, .rate = 0.6f, .steepest = level >= 2 ? 0.8f : 1.4f, .uplift_share = &uplift, .strength = &strength};
-        if (level == 0 && coarsest > 0) incision.rate = 0.1f;
-        if (level == 1 && coarsest > 1) incision.rate = 0.3f;
-        incision.uplift_m = plan.steepness_m * incision.rate;
+        Incision incision{.uplift_m = 0, .rate = 0.6f, .steepest = level >= 2 ? 0.5f : 0.8f, .uplift_share = &uplift, .strength = &strength};
+        if (level == 2 && coarsest > 2) incision.rate = 0.15f;
+        if (level == 1 && coarsest > 1) incision.rate = 0.04f;
+        if (level == 0 && coarsest > 0) incision.rate = 0.02f;
+        // Finer grids have smaller catchments, which uplift would raise to peaks: there only rain is at work.
+        if (level == coarsest || level == 2) incision.uplift_m = plan.steepness_m * incision.rate;
         for (int s = 0; s < steps; ++s) {
             LOAM_TRY(step_progress(progress, kShare[level] + 0.1 * s / steps,
                                    level == coarsest ? "carving the drainage network" : "carving gullies"));
             const uint32_t wander = hash(request.seed, static_cast<uint32_t>(level * 1000 + s)) | 1u;
             const Drainage drainage = route(shape.height_m, spacing, plan.outlets, wander);
             incise(shape.height_m, drainage, spacing, incision);
-            if (level > 0) creep(shape.height_m, spacing, (level == 3 ? 0.16f : level == 2 ? 0.06f : 0.02f) * dx * dx);
+            if (level > 0) creep(shape.height_m, spacing, (level == 3 ? 1.5f : level == 2 ? 0.6f : 0.05f) * dx * dx);
         }
         if (level == std::min(1, coarsest)) {
             LOAM_TRY(step_progress(progress, 0.4, "filling valley floors"));
             const Drainage drainage = route(shape.height_m, spacing, plan.outlets, request.seed | 1u);
             fill_valleys(shape.height_m, shape.deposit_m, drainage, spacing, plan.fill_m * scale, 60000.0f * scale * scale);
+            // Old channels and bars: a floor is never a plane, and what flows over it needs somewhere to go.
+            const Grid bars = filled_by(size, [&](float u, float v) {
+                return fractal(u * 26, v * 26, request.seed + 700u, 5, 0.5f);
+            });
+            for (size_t c = 0; c < bars.v.size(); ++c)
+                shape.height_m.v[c] += 2.2f * scale * bars.v[c] * std::min(shape.deposit_m.v[c] / (2 * scale), 1.0f);
         }
         if (level <= 1) {
             LOAM_TRY(step_progress(progress, kShare[level] + 0.15, "laying fans and scree"));
@@ -93,7 +88,7 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
                                {.capacity = 0.05f * dx * dx, .pick_up = 0.3f, .deepest_m = 0.15f * dx});
             }
             weather(shape.height_m, shape.deposit_m, spacing,
-                    {.repose = 0.66f, .rock_limit = 0.85f, .crumble = 0.05f, .strength = &strength}, level == 1 ? 60 : 40);
+                    {.repose = 0.62f, .rock_limit = 0.72f, .crumble = 0.05f, .strength = &strength}, level == 1 ? 60 : 40);
             creep(shape.height_m, spacing, (level == 1 ? 0.1f : 0.04f) * dx * dx);
         }
     }
@@ -107,7 +102,7 @@ Grid rock_strength(const ShapeRequest& request, uint32_t seed) {
     return filled_by(std::min(request.size, 1025), [&](float u, float v) {
         const float bend = fractal(u * 3, v * 3, seed, 4) * 0.22f;
         const float band = noise((u * 0.6f + v * 0.8f + bend) * bands, 0.5f, seed + 1);
-        return std::clamp(1.0f + 0.35f * band + 0.45f * fractal(u * 14, v * 14, seed + 2, 6, 0.65f), 0.5f, 1.8f);
+        return std::clamp(1.0f + 0.35f * band + 0.45f * fractal(u * 14, v * 14, seed + 2, 6, 0.65f), 0.6f, 1.7f);
     });
 }
 
@@ -117,6 +112,17 @@ float steepness_at(double side_m, float at_4_km) {
 }
 
 } // namespace
+
+void bend(Grid& height_m, uint32_t seed, float strength) {
+    const Grid straight = height_m;
+    const float last = static_cast<float>(height_m.size - 1);
+    height_m = filled_by(height_m.size, [&](float u, float v) {
+        const float finer = 2.0f / (0.5f + strength);
+        const float su = strength * 0.028f * fractal(u * 6 * finer, v * 6 * finer, seed + 31, 3);
+        const float sv = strength * 0.028f * fractal(u * 6 * finer, v * 6 * finer, seed + 37, 3);
+        return straight.bilinear((u + su) * last, (v + sv) * last);
+    });
+}
 
 Result<Shape> shape_valley(const ShapeRequest& request, const Progress& progress) {
     const uint32_t seed = hash(request.seed, 11);
