@@ -41,6 +41,27 @@ Status check_readable(const std::filesystem::path& file) {
     return {};
 }
 
+// A PNG is a signature and chunks: length, name, data, checksum, up to IEND. Walking them finds a file that is cut short before
+// libpng does, which would print a line of its own.
+Status check_png_chunks(const std::filesystem::path& file) {
+    constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+    std::ifstream stream(file, std::ios::binary);
+    std::array<unsigned char, 8> head{};
+    stream.read(reinterpret_cast<char*>(head.data()), head.size());
+    if (!stream || head != kSignature) return {};
+    std::error_code code;
+    const uint64_t size = std::filesystem::file_size(file, code);
+    for (uint64_t at = head.size(); at + 12 <= size;) {
+        stream.seekg(static_cast<std::streamoff>(at));
+        stream.read(reinterpret_cast<char*>(head.data()), head.size());
+        const uint64_t length = uint64_t{head[0]} << 24 | uint64_t{head[1]} << 16 | uint64_t{head[2]} << 8 | head[3];
+        if (!stream || at + 12 + length > size) break;
+        if (std::equal(head.begin() + 4, head.end(), "IEND")) return {};
+        at += 12 + length;
+    }
+    return error("{} is cut short: its {} bytes end before the end of the picture", file.string(), size);
+}
+
 // Reads all channels in the file's own type and keeps the first as floats.
 template <typename T>
 bool read_channels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, SampleImage& out) {
@@ -154,6 +175,7 @@ Status write_caught(const std::filesystem::path& file, const OIIO::ImageSpec& sp
 
 Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side) {
     LOAM_TRY(check_readable(file));
+    LOAM_TRY(check_png_chunks(file));
     try {
         return read_with_oiio(file, max_side);
     } catch (const std::exception& exception) {

@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "editor/dressing.h"
 #include "editor/project_folder.h"
+#include "editor/recipe/layers.h"
+#include "editor/recipe/make_project.h"
 #include "runtime/base/units.h"
 
 namespace loam {
@@ -30,22 +31,31 @@ Result<SampleImage> cropped(SampleImage image, const SampleCrop& crop) {
     return image;
 }
 
-// Samples become metres in place, rows turned so that row 0 is south.
-void samples_to_heights(SampleImage& image, const HeightScale& scale, double fill_m, std::vector<int32_t>& mm) {
+// Rows are turned so that row 0 is south.
+std::vector<int32_t> heights_of(const SampleImage& image, const HeightScale& scale, double fill_m) {
     const auto width = static_cast<size_t>(image.width);
-    mm.resize(image.samples.size());
+    std::vector<int32_t> mm(image.samples.size());
     for (int row = 0; row < image.height; ++row) {
         const float* source = image.samples.data() + static_cast<size_t>(row) * width;
         int32_t* target = mm.data() + static_cast<size_t>(image.height - 1 - row) * width;
         for (size_t i = 0; i < width; ++i)
             target[i] = height_mm_from_m(std::isfinite(source[i]) ? scale.height_m(source[i]) : fill_m);
     }
-    for (size_t i = 0; i < mm.size(); ++i) image.samples[i] = static_cast<float>(height_m_from_mm(mm[i]));
+    return mm;
+}
+
+// No finer than a quarter of the heights' spacing, and at most 4,200 texels a side: a few seconds to make.
+double choose_index_spacing_m(double map_side_m, double height_spacing_m) {
+    constexpr double kMostTexels = 4200, kFinest_m = 0.25, kCoarsest_m = 64;
+    double spacing_m = kFinest_m;
+    while (spacing_m < kCoarsest_m && (spacing_m < height_spacing_m / 4 || map_side_m / spacing_m > kMostTexels)) spacing_m *= 2;
+    return spacing_m;
 }
 
 ProjectSettings settings_for(const ImportRequest& request, int width, int height) {
     ProjectSettings settings;
-    settings.name = request.heights.stem().string();
+    settings.name = std::filesystem::absolute(request.project).lexically_normal().filename().string();
+    if (settings.name.empty()) settings.name = request.heights.stem().string();
     settings.height_samples_x = width;
     settings.height_samples_y = height;
     settings.height_spacing_m = request.spacing_m;
@@ -54,24 +64,16 @@ ProjectSettings settings_for(const ImportRequest& request, int width, int height
     return settings;
 }
 
-Status write_maps(Document& document, const std::vector<int32_t>& mm, const HeightField& ground, uint32_t seed,
-                  bool has_layers, const Progress& progress) {
+Status write_heights(Document& document, const std::vector<int32_t>& mm, const Progress& progress) {
     BulkWriter writer(document);
-    const ProjectSettings& settings = document.settings();
-    const auto width = static_cast<size_t>(settings.height_samples_x);
-    for (int row = 0; row < settings.height_samples_y; row += kRowsAtOnce) {
-        const int rows = std::min(kRowsAtOnce, settings.height_samples_y - row);
-        LOAM_TRY(writer.write_height_rows(row, rows, std::span(mm).subspan(static_cast<size_t>(row) * width,
-                                                                           static_cast<size_t>(rows) * width)));
-        LOAM_TRY(step_progress(progress, 0.4 * row / settings.height_samples_y, "writing heights"));
+    const auto width = static_cast<size_t>(document.settings().height_samples_x);
+    const int height = document.settings().height_samples_y;
+    for (int row = 0; row < height; row += kRowsAtOnce) {
+        const int rows = std::min(kRowsAtOnce, height - row);
+        LOAM_TRY(writer.write_height_rows(
+            row, rows, std::span(mm).subspan(static_cast<size_t>(row) * width, static_cast<size_t>(rows) * width)));
+        LOAM_TRY(step_progress(progress, static_cast<double>(row) / height, "writing heights"));
     }
-    if (has_layers) {
-        const glm::ivec2 size = document.index_size_texels();
-        auto texels = make_index_texels(settings, ground, size.x, size.y, seed, part_of(progress, 0.4, 0.8));
-        if (!texels) return texels.error();
-        LOAM_TRY(writer.write_index_rows(0, size.y, *texels));
-    }
-    LOAM_TRY(step_progress(progress, 0.9, "saving"));
     return writer.finish();
 }
 
@@ -104,14 +106,18 @@ Result<ImportReport> import_heights(const ImportRequest& request, const Progress
     LOAM_TRY(check_settings(settings));
     auto folder = NewFolder::create(request.project);
     if (!folder) return folder.error();
-    std::vector<int32_t> mm;
-    samples_to_heights(*image, *scale, request.fill_nan_m.value_or(0.0), mm);
-    LOAM_TRY(make_layer_files(folder->path(), settings, request.layer_size_texels, request.seed, part_of(progress, 0.05, 0.5)));
+    if (request.layer_size_texels > 0) {
+        LOAM_TRY(step_progress(progress, 0.1, "making layers"));
+        auto layers = make_layers_for(folder->path(), request.seed, request.layer_size_texels);
+        if (!layers) return layers.error();
+        settings.layers = *layers;
+    }
     {
         auto document = Document::create(folder->path(), settings);
         if (!document) return document.error();
-        const HeightField ground{image->width, image->height, request.spacing_m, image->samples, {}, {}};
-        LOAM_TRY(write_maps(**document, mm, ground, request.seed, !settings.layers.empty(), part_of(progress, 0.5, 1.0)));
+        const std::vector<int32_t> mm = heights_of(*image, *scale, request.fill_nan_m.value_or(0.0));
+        LOAM_TRY(write_heights(**document, mm, part_of(progress, 0.5, 0.6)));
+        if (!settings.layers.empty()) LOAM_TRY(make_index_from_heights(**document, part_of(progress, 0.6, 1.0)));
     }
     LOAM_TRY(folder->keep());
     return report;

@@ -24,7 +24,7 @@ struct ImportRequest {
     std::optional<double> fill_nan_m;
     std::optional<SampleCrop> crop;
     int layer_size_texels = 1024; // of the layers' textures; 0: no layers
-    uint32_t seed = 1;            // of the layers and the index map
+    uint32_t seed = 1;            // of the layers
 };
 
 struct ImportReport {

@@ -1,18 +1,17 @@
-// `loam new`: an example project from a recipe.
+// `loam new`: an example project from a recipe, whole or not at all.
 #pragma once
 
 #include <filesystem>
 
-#include "editor/recipe/ground.h"
+#include "editor/recipe/make_project.h"
 
 namespace loam {
 
 struct NewProjectRequest {
     std::filesystem::path project;
     RecipeRequest recipe;
-    int layer_size_texels = 1024; // 0: no layers
+    int layer_size_texels = kRecipeLayerSize; // a power of two, 64 … 2048
 };
-// The project appears whole or not at all.
-[[nodiscard]] Status make_project(const NewProjectRequest& request, const Progress& progress);
+[[nodiscard]] Status create_project(const NewProjectRequest& request, const Progress& progress);
 
 } // namespace loam

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "runtime/base/result.h"
 
@@ -16,6 +17,7 @@ class NewFolder {
     ~NewFolder(); // removes what was not kept
 
     [[nodiscard]] const std::filesystem::path& path() const { return temporary_; }
+    [[nodiscard]] std::string name() const { return target_.filename().string(); } // of the folder to be
     // Everything in it is closed by now.
     Status keep();
 

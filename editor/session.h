@@ -47,6 +47,7 @@ class Session {
     Document& document() { return *document_; }
     // The device and renderer are made at the first use: edits and queries of a script that renders nothing need no GPU.
     Result<Renderer*> renderer();
+    Status start_device() { return make_device(); } // the window: something is on screen before the renderer is there
     gpu::Device* device() { return device_.get(); }
     gpu::FrameRing* ring() { return ring_.get(); }
 

@@ -20,6 +20,7 @@ Status run(const Args& args) {
     if (args.has("--shaders")) options.shader_dir = args.text("--shaders");
     options.ui_scale = args.number("--ui-scale", 0);
     options.max_frames = args.integer("--max-frames", 0);
+    options.report = args.has("--report");
     // The project is opened once here: a bad one is refused before a window flashes up.
     if (auto document = Document::open(options.project, OpenMode::read_only); !document) return document.error();
     if (run_window(options) != 0) return error("the window ended with a failure, see above");
@@ -40,6 +41,7 @@ Verb edit_verb() {
                         {"--shaders", ValueKind::text, "DIR", "read shaders from here and reload them when a file changes"},
                         {"--ui-scale", ValueKind::number, "S", "size of the interface; default as the screen says"},
                         {"--max-frames", ValueKind::integer, "N", "close after so many frames"},
+                        {"--report", ValueKind::none, "", "say what happens as JSON lines on stdout"},
                         {"--device", ValueKind::text, "NAME", "part of the Vulkan device's name, or its number"},
                         {"--validation", ValueKind::none, "", "Vulkan validation"}},
             .run = run};

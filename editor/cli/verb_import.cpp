@@ -77,7 +77,7 @@ Verb import_verb() {
                         {"--fill-nan", ValueKind::number, "M", "height of samples that are NaN or infinite"},
                         {"--crop", ValueKind::numbers, "X,Y,W,H", "this part of the picture, in samples from the upper left corner"},
                         {"--layer-size", ValueKind::integer, "N", "texels a side of the layers' textures; default 1024, 0: no layers"},
-                        {"--seed", ValueKind::integer, "N", "of the layers and where they lie; default 1"},
+                        {"--seed", ValueKind::integer, "N", "of the layers' textures; default 1"},
                         {"--json", ValueKind::none, "", "print what was found as JSON"}},
             .run = run,
             .notes = "Integer samples need --range (the metres of 0 and 65535) or --step and --offset."};

@@ -14,7 +14,7 @@ Status run(const Args& args) {
     request.recipe.seed = static_cast<uint32_t>(args.integer("--seed", 1));
     request.layer_size_texels = args.integer("--layer-size", 1024);
     ProgressLine progress;
-    return make_project(request, progress.callback());
+    return create_project(request, progress.callback());
 }
 
 std::string recipe_notes() {
@@ -33,7 +33,7 @@ Verb new_verb() {
             .options = {{"--recipe", ValueKind::text, "NAME", "which ground; default valley"},
                         {"--size", ValueKind::number, "M", "side of the map in metres, 64 … 16800; default 4096"},
                         {"--seed", ValueKind::integer, "N", "another number, another ground; default 1"},
-                        {"--layer-size", ValueKind::integer, "N", "texels a side of the layers' textures, a power of two; default 1024, 0: no layers"}},
+                        {"--layer-size", ValueKind::integer, "N", "texels a side of the layers' textures, a power of two from 64; default 1024"}},
             .run = run,
             .notes = notes.c_str()};
 }

@@ -16,7 +16,7 @@ Going keep_going(double, std::string_view) {
 
 void new_project(const std::string& path, const std::string& recipe, double size_m, uint32_t seed, int layer_size) {
     const py::gil_scoped_release release;
-    unwrap(make_project({path, {recipe, size_m, seed}, layer_size}, keep_going));
+    unwrap(create_project({path, {recipe, size_m, seed}, layer_size}, keep_going));
 }
 
 py::object import_project(const std::string& heights, const std::string& path, double spacing_m, const py::object& range_m,

@@ -17,6 +17,7 @@ struct WindowOptions {
     double ui_scale = 0;                             // 0: as the screen says
     int max_frames = 0;                              // closes after so many frames; 0: when the person closes it
     bool validation = false;
+    bool report = false;                             // what happens, as JSON lines on stdout (report.h)
 };
 
 // 0 when the window was closed, 1 after a failure that was reported on stderr.
