@@ -21,8 +21,8 @@ class HeightQueryCache {
     };
     // Composes what is absent. The pointer holds until the next call.
     const float* page(const Document& document, const VirtualMap& map, const MapPage& page);
-    // Between which heights the page's surface lies; need not be tight.
-    Bounds bounds(const Document& document, const VirtualMap& map, const MapPage& page);
+    // Between which heights the page's surface lies; need not be tight. `heights_m`: the page's, where they are at hand.
+    Bounds bounds(const Document& document, const VirtualMap& map, const MapPage& page, const float* heights_m);
     void drop(const VirtualMap& map, const WorldRect& rect);
     [[nodiscard]] uint64_t bytes() const;
 
@@ -47,6 +47,8 @@ struct HeightMap::Impl {
         TexelRect changed;            // of the window, in texels of the page: heights to evaluate again
     };
 
+    // Null: not resident, or dirty.
+    [[nodiscard]] const float* clean_heights(const MapPage& page) const;
     // The page's heights at the finest level, as they would be composed now. Cache's mutex held.
     const float* finest_heights(const MapPage& page);
     std::vector<VirtualMap::Work> compose_planned(uint64_t frame, int new_pages);

@@ -42,7 +42,7 @@ Result<std::unique_ptr<HeightMap>> HeightMap::create(gpu::Device* device, const 
     image.width = image.height = kHeightTexels;
     image.layer_count = uint32_t(desc.slot_count);
     image.array_view = true;
-    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     image.name = "heights";
     image.format = VK_FORMAT_R32_SFLOAT;
     auto heights = gpu::Image::create(*device, image);

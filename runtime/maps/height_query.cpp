@@ -120,7 +120,7 @@ const float* HeightQueryCache::page(const Document& document, const VirtualMap& 
 }
 
 HeightQueryCache::Bounds HeightQueryCache::bounds(const Document& document, const VirtualMap& map,
-                                                  const MapPage& page) {
+                                                  const MapPage& page, const float* heights_m) {
     if (const auto found = bounds_.find(page); found != bounds_.end()) return found->second;
     const auto operators_touch = [&] {
         std::vector<const Operator*> operators;
@@ -129,9 +129,9 @@ HeightQueryCache::Bounds HeightQueryCache::bounds(const Document& document, cons
     };
     Bounds result;
     auto lock = document.read_lock();
-    if (operators_touch()) {
+    if (heights_m || operators_touch()) {
         lock.unlock();
-        const float* heights_m = this->page(document, map, page);
+        if (!heights_m) heights_m = this->page(document, map, page);
         const auto [low, high] = std::minmax_element(heights_m, heights_m + kHeightTexels * kHeightTexels);
         result = {*low, *high};
     } else {
@@ -180,10 +180,14 @@ uint64_t HeightQueryCache::bytes() const {
            bounds_.size() * (sizeof(MapPage) + sizeof(Bounds) + 2 * sizeof(void*));
 }
 
-const float* HeightMap::Impl::finest_heights(const MapPage& page) {
+const float* HeightMap::Impl::clean_heights(const MapPage& page) const {
     const int slot = map.slot_of(page);
-    if (slot >= 0 && map.dirty_of(slot).empty()) return slots[size_t(slot)].page.heights_m.data();
-    return cache.page(document, map, page);
+    return slot >= 0 && map.dirty_of(slot).empty() ? slots[size_t(slot)].page.heights_m.data() : nullptr;
+}
+
+const float* HeightMap::Impl::finest_heights(const MapPage& page) {
+    const float* heights_m = clean_heights(page);
+    return heights_m ? heights_m : cache.page(document, map, page);
 }
 
 double HeightMap::height_m(double x_m, double y_m) {
@@ -219,7 +223,7 @@ std::optional<glm::dvec3> HeightMap::ray_cast(glm::dvec3 origin_m, glm::dvec3 di
     std::optional<double> hit;
     const auto visit_page = [&](glm::ivec2 page_at, double from, double to) {
         const MapPage page{0, page_at.x, page_at.y};
-        const HeightQueryCache::Bounds bounds = impl_->cache.bounds(impl_->document, impl_->map, page);
+        const HeightQueryCache::Bounds bounds = impl_->cache.bounds(impl_->document, impl_->map, page, impl_->clean_heights(page));
         const double z0 = origin_m.z + unit.z * from, z1 = origin_m.z + unit.z * to;
         if (std::min(z0, z1) > double(bounds.max_m) + 1e-3 || std::max(z0, z1) < double(bounds.min_m) - 1e-3) return false;
 

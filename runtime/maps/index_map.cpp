@@ -80,7 +80,7 @@ Result<std::unique_ptr<IndexMap>> IndexMap::create(gpu::Device* device, const Do
     image.width = image.height = kIndexTexels;
     image.layer_count = uint32_t(desc.slot_count);
     image.array_view = true;
-    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     image.name = "layer indices";
     image.format = VK_FORMAT_R16_UINT;
     auto indices = gpu::Image::create(*device, image);
