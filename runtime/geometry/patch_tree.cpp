@@ -15,7 +15,7 @@ namespace loam {
 
 namespace {
 
-constexpr int kMaxDelta = 4; // log2(kPatchQuads): a patch's edge is at least one whole quad of its neighbour
+constexpr int kMaxDelta = 4;  // log2(kPatchQuads): a patch's edge is at least one whole quad of its neighbour
 static_assert(1 << kMaxDelta == kPatchQuads);
 
 using PageSet = std::unordered_set<MapPage, MapPageHash>;
@@ -33,22 +33,25 @@ std::vector<MapPage> children_of(const VirtualMap& map, const MapPage& page) {
     return children;
 }
 
-// Half spaces dot(xyz, p) + w >= 0 that a visible point lies in. The far plane is infinite, and an orthographic view must not
-// lose what casts shadows from before it, so that depth counts only as the near plane of a perspective.
+// Half spaces dot(xyz, p) + w >= 0 that a visible point lies in. The far plane is infinite, and an
+// orthographic view must not lose what casts shadows from before it, so that depth counts only as the near
+// plane of a perspective.
 struct Frustum {
     std::array<glm::dvec4, 5> planes;
     int count = 4;
 
     explicit Frustum(const glm::dmat4& clip_from_rel) {
         const glm::dmat4 rows = glm::transpose(clip_from_rel);
-        planes = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1], rows[3] - rows[2]};
+        planes = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1], rows[3] - rows[1],
+                  rows[3] - rows[2]};
         const bool perspective = glm::dvec3(rows[3]) != glm::dvec3(0);
         if (perspective) count = 5;
     }
     [[nodiscard]] bool meets(const PatchBox& box) const {
         for (int i = 0; i < count; ++i) {
             const glm::dvec4& plane = planes[size_t(i)];
-            const glm::dvec3 corner(plane.x > 0 ? box.high_m.x : box.low_m.x, plane.y > 0 ? box.high_m.y : box.low_m.y,
+            const glm::dvec3 corner(plane.x > 0 ? box.high_m.x : box.low_m.x,
+                                    plane.y > 0 ? box.high_m.y : box.low_m.y,
                                     plane.z > 0 ? box.high_m.z : box.low_m.z);
             if (glm::dot(glm::dvec3(plane), corner) + plane.w < 0) return false;
         }
@@ -69,7 +72,8 @@ class Selection {
         heights_.request(map_.root(), kRootPriority);
         if (map_.slot_of(map_.root()) < 0) return;
         visit(map_.root(), kRootPriority, true);
-        // Where pages of very different levels meet, the finer side gives way. Rare: the distance alone never does it.
+        // Where pages of very different levels meet, the finer side gives way. Rare: the distance alone never
+        // does it.
         while (keep_whole_where_too_steep()) {
             leaves_.clear();
             visit(map_.root(), kRootPriority, false);
@@ -90,7 +94,8 @@ class Selection {
         const auto hidden = std::stable_partition(leaves_.begin(), leaves_.end(), visible);
         set.visible_count = int(hidden - leaves_.begin());
         for (const MapPage& page : leaves_) set.patches.push_back(instance(page, set.origin_step));
-        for (const MapPage& page : leaves_) set.cut_hash += MapPageHash{}(page) * 0x9E3779B97F4A7C15ull; // in any order
+        for (const MapPage& page : leaves_)
+            set.cut_hash += MapPageHash{}(page)*0x9E3779B97F4A7C15ull;  // in any order
         set.pages = std::move(leaves_);
         return set;
     }
@@ -98,19 +103,21 @@ class Selection {
   private:
     static constexpr float kRootPriority = 4;
 
-    // Priorities: 1 / (1 + distance / side) of the parent, plus 1 in the frustum; four siblings have the same, as they are of use
-    // only together; none has more than its parent, so that ancestors come first.
+    // Priorities: 1 / (1 + distance / side) of the parent, plus 1 in the frustum; four siblings have the
+    // same, as they are of use only together; none has more than its parent, so that ancestors come first.
     void visit(const MapPage& page, float priority, bool requesting) {
         const PatchBox box = patch_box(heights_, page, view_.camera_m);
         const double side = map_.page_size_m(page.level);
         const double distance = distance_to_origin(box);
-        const bool near = distance < view_.split_distance * side || (view_.max_level > 0 && page.level > view_.max_level);
+        const bool near =
+            distance < view_.split_distance * side || (view_.max_level > 0 && page.level > view_.max_level);
         if (page.level <= view_.min_level || page.level == 0 || !near) {
             leaves_.push_back(page);
             return;
         }
         const float seen = frustum_.meets(box) ? 1.0f : 0.0f;
-        const float wanted = std::min(priority * 0.9999f, static_cast<float>(1.0 / (1.0 + distance / side)) + seen);
+        const float wanted =
+            std::min(priority * 0.9999f, static_cast<float>(1.0 / (1.0 + distance / side)) + seen);
         const std::vector<MapPage> children = children_of(map_, page);
         bool all_resident = true;
         for (const MapPage& child : children) {
@@ -132,8 +139,12 @@ class Selection {
         return -1;
     }
 
-    static std::array<MapPage, 4> neighbours(const MapPage& p) { // west, south, east, north: the order of lod_deltas
-        return {{{p.level, p.x - 1, p.y}, {p.level, p.x, p.y - 1}, {p.level, p.x + 1, p.y}, {p.level, p.x, p.y + 1}}};
+    static std::array<MapPage, 4> neighbours(
+        const MapPage& p) {  // west, south, east, north: the order of lod_deltas
+        return {{{p.level, p.x - 1, p.y},
+                 {p.level, p.x, p.y - 1},
+                 {p.level, p.x + 1, p.y},
+                 {p.level, p.x, p.y + 1}}};
     }
 
     bool keep_whole_where_too_steep() {
@@ -173,7 +184,7 @@ class Selection {
     PageSet leaf_set_, kept_whole_;
 };
 
-} // namespace
+}  // namespace
 
 static_assert(kPatchQuads * kPatchQuadTexels == kHeightPayload);
 static_assert(kPatchBorder == kHeightBorder && kPatchTexels == kHeightTexels);
@@ -196,16 +207,18 @@ PatchSet select_patches(HeightMap& heights, const PatchView& view) {
     return selection.result();
 }
 
-std::vector<uint32_t> patches_in(const PatchSet& set, const HeightMap& heights, const glm::dmat4& clip_from_rel) {
+std::vector<uint32_t> patches_in(const PatchSet& set, const HeightMap& heights,
+                                 const glm::dmat4& clip_from_rel) {
     const Frustum frustum(clip_from_rel);
     std::vector<uint32_t> indices;
     for (size_t i = 0; i < set.pages.size(); ++i) {
         const MapPage& page = set.pages[i];
         // A page that was ejected since it was selected is drawn this frame still.
         const bool resident = heights.resident_page(page) != nullptr;
-        if (!resident || frustum.meets(patch_box(heights, page, set.camera_m))) indices.push_back(uint32_t(i));
+        if (!resident || frustum.meets(patch_box(heights, page, set.camera_m)))
+            indices.push_back(uint32_t(i));
     }
     return indices;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -10,8 +10,8 @@ namespace {
 
 constexpr uint32_t kIndexCount = kPatchQuads * kPatchQuads * 6;
 
-// Two triangles a quad, counter-clockwise seen from above; diagonals alternate, so that ridges in neither direction
-// are favoured.
+// Two triangles a quad, counter-clockwise seen from above; diagonals alternate, so that ridges in neither
+// direction are favoured.
 std::vector<uint16_t> grid_indices() {
     std::vector<uint16_t> indices;
     for (int y = 0; y < kPatchQuads; ++y)
@@ -34,7 +34,7 @@ gpu::GraphicsDesc patch_pipeline(const char* name, VkFormat depth_format) {
     return desc;
 }
 
-} // namespace
+}  // namespace
 
 Result<TerrainPass> TerrainPass::create(gpu::Device& device, const std::vector<VkFormat>& color_formats,
                                         VkFormat depth_stencil, VkFormat shadow_depth) {
@@ -118,16 +118,19 @@ void TerrainPass::cmd_draw_prepass(gpu::Commands& commands, const PatchSet& patc
 }
 
 void TerrainPass::cmd_draw_shadow(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,
-                                  const glm::dmat4& clip_from_rel, const glm::dvec3& camera_m, const DepthBias& bias) {
+                                  const glm::dmat4& clip_from_rel, const glm::dvec3& camera_m,
+                                  const DepthBias& bias) {
     LOAM_CHECK(camera_m == patches.camera_m, "patches were selected for another camera");
     const std::vector<uint32_t> seen = patches_in(patches, heights, clip_from_rel);
     if (!instances_.data || seen.empty()) return;
     bind(commands, shadow_, patches, heights, glm::mat4(clip_from_rel), false);
     vkCmdSetDepthBias(commands.handle(), bias.constant, 0.0f, bias.slope);
-    for (size_t begin = 0, end = 0; begin < seen.size(); begin = end) { // a draw a run of neighbouring instances
-        for (end = begin + 1; end < seen.size() && seen[end] == seen[end - 1] + 1; ++end) {}
+    for (size_t begin = 0, end = 0; begin < seen.size();
+         begin = end) {  // a draw a run of neighbouring instances
+        for (end = begin + 1; end < seen.size() && seen[end] == seen[end - 1] + 1; ++end) {
+        }
         vkCmdDrawIndexed(commands.handle(), kIndexCount, uint32_t(end - begin), 0, 0, seen[begin]);
     }
 }
 
-} // namespace loam
+}  // namespace loam

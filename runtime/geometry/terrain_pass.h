@@ -1,13 +1,13 @@
-// Draws the patches of a PatchSet: the prepass (depth, stencil 1, G-buffer, ambient occlusion) and shadow maps.
+// Draws the patches of a PatchSet: the prepass (depth, stencil 1, G-buffer, ambient occlusion) and shadow
+// maps.
 //
-//     LOAM_TRY(terrain.upload(ring, commands, patches));                     // once a frame, outside of rendering
-//     commands.begin_rendering(extent, {gbuffer, occlusion}, depth);
-//     commands.set_viewport(…);
+//     LOAM_TRY(terrain.upload(ring, commands, patches));                     // once a frame, outside of
+//     rendering commands.begin_rendering(extent, {gbuffer, occlusion}, depth); commands.set_viewport(…);
 //     terrain.cmd_draw_prepass(commands, patches, heights, clip_from_rel, patches.camera_m);
 //     commands.end_rendering();
 //
-// HeightMap::update leaves the height arrays readable in vertex and fragment shaders: no barrier is needed between. A PatchSet is
-// good for the frame in which it was selected (and two more: ejected slots rest).
+// HeightMap::update leaves the height arrays readable in vertex and fragment shaders: no barrier is needed
+// between. A PatchSet is good for the frame in which it was selected (and two more: ejected slots rest).
 #pragma once
 
 #include <vector>
@@ -28,22 +28,25 @@ struct DepthBias {
 
 class TerrainPass {
   public:
-    // Colour formats: G-buffer (RGBA16F) and ambient occlusion (R8). The prepass needs a stencil in `depth_stencil`.
+    // Colour formats: G-buffer (RGBA16F) and ambient occlusion (R8). The prepass needs a stencil in
+    // `depth_stencil`.
     static Result<TerrainPass> create(gpu::Device& device, const std::vector<VkFormat>& color_formats,
                                       VkFormat depth_stencil, VkFormat shadow_depth = VK_FORMAT_D32_SFLOAT);
 
     // This frame's instances.
     Status upload(gpu::FrameRing& ring, gpu::Commands& commands, const PatchSet& patches);
-    // Inside begun rendering: the visible patches; depth GREATER, stencil replaced by 1. `camera_m` must be that of the set.
+    // Inside begun rendering: the visible patches; depth GREATER, stencil replaced by 1. `camera_m` must be
+    // that of the set.
     void cmd_draw_prepass(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,
                           const glm::mat4& clip_from_rel, const glm::dvec3& camera_m);
     // Inside begun rendering without colour: the patches of the set that the matrix sees; depth GREATER.
     void cmd_draw_shadow(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,
-                         const glm::dmat4& clip_from_rel, const glm::dvec3& camera_m, const DepthBias& bias = {});
+                         const glm::dmat4& clip_from_rel, const glm::dvec3& camera_m,
+                         const DepthBias& bias = {});
 
   private:
-    void bind(gpu::Commands& commands, const gpu::Pipeline& pipeline, const PatchSet& patches, const HeightMap& heights,
-              const glm::mat4& clip_from_rel, bool with_normals);
+    void bind(gpu::Commands& commands, const gpu::Pipeline& pipeline, const PatchSet& patches,
+              const HeightMap& heights, const glm::mat4& clip_from_rel, bool with_normals);
 
     gpu::Pipeline prepass_, shadow_;
     gpu::Sampler nearest_, linear_;
@@ -51,4 +54,4 @@ class TerrainPass {
     gpu::UploadSlice instances_;
 };
 
-} // namespace loam
+}  // namespace loam

@@ -15,7 +15,8 @@ void read_by_place(const Read& read, int mip, glm::ivec2 last, glm::ivec2 first,
         if (sample > last_in_mip[axis]) return last[axis];
         return std::max(sample, 0) << mip;
     };
-    const glm::ivec2 inside = glm::clamp(last_in_mip + 1 - first, glm::ivec2(0), size); // counts of columns and rows
+    const glm::ivec2 inside =
+        glm::clamp(last_in_mip + 1 - first, glm::ivec2(0), size);  // counts of columns and rows
     if (inside.x < size.x && (last_in_mip.x << mip) != last.x) {
         for (int j = 0; j < size.y; ++j) {
             T edge;
@@ -32,17 +33,20 @@ void read_by_place(const Read& read, int mip, glm::ivec2 last, glm::ivec2 first,
     }
 }
 
-} // namespace
+}  // namespace
 
-void read_heights_by_place(const Document& document, int mip, glm::ivec2 first, glm::ivec2 size, int32_t* out) {
+void read_heights_by_place(const Document& document, int mip, glm::ivec2 first, glm::ivec2 size,
+                           int32_t* out) {
     const ProjectSettings& settings = document.settings();
     const auto read = [&](int m, int x, int y, int width, int height, int32_t* to) {
         document.read_heights_mm(m, x, y, width, height, to);
     };
-    read_by_place(read, mip, {settings.height_samples_x - 1, settings.height_samples_y - 1}, first, size, out);
+    read_by_place(read, mip, {settings.height_samples_x - 1, settings.height_samples_y - 1}, first, size,
+                  out);
 }
 
-void read_index_by_place(const Document& document, int mip, glm::ivec2 first, glm::ivec2 size, IndexTexel* out) {
+void read_index_by_place(const Document& document, int mip, glm::ivec2 first, glm::ivec2 size,
+                         IndexTexel* out) {
     const auto read = [&](int m, int x, int y, int width, int height, IndexTexel* to) {
         document.read_index(m, x, y, width, height, to);
     };
@@ -73,4 +77,4 @@ int level_count_for(double extent_m, double spacing_m, int payload_texels) {
     return count;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,5 +1,6 @@
-// Half floats from floats, round to nearest even. Values beyond a half's range become infinity; NaN stays NaN.
-// Source: Fabian Giesen, "float->half variants" (public domain), the variant that lets the FPU round denormals.
+// Half floats from floats, round to nearest even. Values beyond a half's range become infinity; NaN stays
+// NaN. Source: Fabian Giesen, "float->half variants" (public domain), the variant that lets the FPU round
+// denormals.
 #pragma once
 
 #include <bit>
@@ -32,7 +33,7 @@ namespace loam {
     const uint32_t exponent = bits & (0x7c00u << 13);
     bits += (127u - 15u) << 23;
     if (exponent == (0x7c00u << 13)) {
-        bits += (128u - 16u) << 23; // infinity, NaN
+        bits += (128u - 16u) << 23;  // infinity, NaN
     } else if (exponent == 0) {
         bits += 1u << 23;
         bits = std::bit_cast<uint32_t>(std::bit_cast<float>(bits) - std::bit_cast<float>(113u << 23));
@@ -40,4 +41,4 @@ namespace loam {
     return std::bit_cast<float>(bits | sign);
 }
 
-} // namespace loam
+}  // namespace loam

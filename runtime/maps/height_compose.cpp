@@ -12,13 +12,14 @@ namespace loam {
 
 namespace {
 
-// Operators are data; whatever they compute, no page holds a NaN or a height that a float of metres cannot take well.
+// Operators are data; whatever they compute, no page holds a NaN or a height that a float of metres cannot
+// take well.
 constexpr double kLimit_m = 20'000.0;
 
-struct Columns { // where the samples of a window fall on base samples, along one axis
+struct Columns {  // where the samples of a window fall on base samples, along one axis
     std::vector<int> base;
     std::vector<CubicWeights> weights;
-    int first = 0, count = 0; // base samples needed
+    int first = 0, count = 0;  // base samples needed
 };
 
 Columns columns_of(int first, int count, int shift, int last_base) {
@@ -74,20 +75,20 @@ void read_base(const Document& document, int mip, glm::ivec2 first, glm::ivec2 s
 struct Neighbourhood {
     const double* heights_m = nullptr;
     const float* floats_m = nullptr;
-    int width = 0; // texels a row
+    int width = 0;  // texels a row
     double spacing_m = 1;
 };
 
 struct Direction {
     int x, y;
-    float length; // of one step, texels
+    float length;  // of one step, texels
 };
 constexpr float kDiagonal = 1.41421356f;
 constexpr Direction kDirections[] = {{1, 0, 1},  {1, 1, kDiagonal},   {0, 1, 1},  {-1, 1, kDiagonal},
                                      {-1, 0, 1}, {-1, -1, kDiagonal}, {0, -1, 1}, {1, -1, kDiagonal}};
 
-// `count` texels of a row from the neighbourhood's. Loops run over the row so that they vectorise; every texel's
-// expression is the same wherever the row begins.
+// `count` texels of a row from the neighbourhood's. Loops run over the row so that they vectorise; every
+// texel's expression is the same wherever the row begins.
 void derive_row(const Neighbourhood& window, int count, uint16_t* out) {
     const double* h = window.heights_m;
     const float* f = window.floats_m;
@@ -143,15 +144,15 @@ void measure_range(HeightPage& page) {
     page.max_m = high;
 }
 
-} // namespace
+}  // namespace
 
 CubicWeights catmull_rom(double f) {
-    return {{((-0.5 * f + 1.0) * f - 0.5) * f, (1.5 * f - 2.5) * f * f + 1.0, ((-1.5 * f + 2.0) * f + 0.5) * f,
-             (0.5 * f - 0.5) * f * f}};
+    return {{((-0.5 * f + 1.0) * f - 0.5) * f, (1.5 * f - 2.5) * f * f + 1.0,
+             ((-1.5 * f + 2.0) * f + 0.5) * f, (0.5 * f - 0.5) * f * f}};
 }
 
-void compose_heights(const Document& document, const VirtualMap& map, int level, glm::ivec2 first, glm::ivec2 size,
-                     double* out_m) {
+void compose_heights(const Document& document, const VirtualMap& map, int level, glm::ivec2 first,
+                     glm::ivec2 size, double* out_m) {
     const int refine = document.settings().refine;
     if (level < refine)
         interpolate_base(document, refine - level, first, size, out_m);
@@ -172,11 +173,13 @@ void compose_heights(const Document& document, const VirtualMap& map, int level,
         out_m[i] = std::isnan(out_m[i]) ? 0.0 : std::clamp(out_m[i], -kLimit_m, kLimit_m);
 }
 
-void compose_page_heights(const Document& document, const VirtualMap& map, const MapPage& page, float* out_m) {
+void compose_page_heights(const Document& document, const VirtualMap& map, const MapPage& page,
+                          float* out_m) {
     thread_local std::vector<double> heights_m;
     heights_m.resize(size_t(kHeightTexels) * kHeightTexels);
     const auto lock = document.read_lock();
-    compose_heights(document, map, page.level, first_sample(page), glm::ivec2(kHeightTexels), heights_m.data());
+    compose_heights(document, map, page.level, first_sample(page), glm::ivec2(kHeightTexels),
+                    heights_m.data());
     for (size_t i = 0; i < heights_m.size(); ++i) out_m[i] = static_cast<float>(heights_m[i]);
 }
 
@@ -211,8 +214,8 @@ glm::ivec2 first_sample(const MapPage& page) {
     return {page.x * kHeightPayload - kHeightBorder, page.y * kHeightPayload - kHeightBorder};
 }
 
-void HeightMap::compose(const Document& document, const VirtualMap& map, const MapPage& page, const TexelRect& rect,
-                        HeightPage& out) {
+void HeightMap::compose(const Document& document, const VirtualMap& map, const MapPage& page,
+                        const TexelRect& rect, HeightPage& out) {
     LOAM_CHECK(rect == intersected(rect, {0, 0, kHeightTexels, kHeightTexels}), "rectangle beyond the page");
     if (rect.empty()) return;
     const TexelRect window{rect.x0 - kWindowMargin, rect.y0 - kWindowMargin, rect.x1 + kWindowMargin,
@@ -227,4 +230,4 @@ void HeightMap::compose(const Document& document, const VirtualMap& map, const M
     derive_page(map, page.level, window, heights_m.data(), rect, out);
 }
 
-} // namespace loam
+}  // namespace loam

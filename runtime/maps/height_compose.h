@@ -1,8 +1,8 @@
 // The steps of HeightMap::compose that queries use alone. All are pure functions of the document.
 //
-// Source of the ambient occlusion: horizon angles as in Max, "Horizon Mapping" (1988); the cosine-weighted share of the sky
-// above a horizon of slope t is 1 / (1 + t²) a direction. What differs: slopes are taken relative to the tangent
-// plane, so that an even slope is open.
+// Source of the ambient occlusion: horizon angles as in Max, "Horizon Mapping" (1988); the cosine-weighted
+// share of the sky above a horizon of slope t is 1 / (1 + t²) a direction. What differs: slopes are taken
+// relative to the tangent plane, so that an even slope is open.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -11,22 +11,24 @@
 
 namespace loam {
 
-// Heights in metres, row-major, at samples first + (i, j) of a level: base samples (bicubic where the level is finer
-// than the base, exactly through the samples), then operators. The caller holds the document's ReadLock.
-void compose_heights(const Document& document, const VirtualMap& map, int level, glm::ivec2 first, glm::ivec2 size,
-                     double* out_m);
+// Heights in metres, row-major, at samples first + (i, j) of a level: base samples (bicubic where the level
+// is finer than the base, exactly through the samples), then operators. The caller holds the document's
+// ReadLock.
+void compose_heights(const Document& document, const VirtualMap& map, int level, glm::ivec2 first,
+                     glm::ivec2 size, double* out_m);
 
 // The same of a whole page with its border, as HeightPage has them. Takes the ReadLock.
 void compose_page_heights(const Document& document, const VirtualMap& map, const MapPage& page, float* out_m);
 
-// The heights that a page and its normals and occlusion are made from: the page's texels and kOcclusionRadius more on every
-// side, row 0 south. Kept beside a resident page, so that an edit evaluates only the heights that it changed.
+// The heights that a page and its normals and occlusion are made from: the page's texels and kOcclusionRadius
+// more on every side, row 0 south. Kept beside a resident page, so that an edit evaluates only the heights
+// that it changed.
 inline constexpr int kWindowMargin = kOcclusionRadius, kWindowTexels = kHeightTexels + 2 * kWindowMargin;
 inline constexpr TexelRect kWindowRect{-kWindowMargin, -kWindowMargin, kHeightTexels + kWindowMargin,
-                                       kHeightTexels + kWindowMargin}; // in texels of the page
+                                       kHeightTexels + kWindowMargin};  // in texels of the page
 
-// Fills `rect` of the page, heights, normals, occlusion, range, from a piece of the window: `heights_m` holds `window` (in texels
-// of the page), which must reach kWindowMargin beyond the rectangle.
+// Fills `rect` of the page, heights, normals, occlusion, range, from a piece of the window: `heights_m` holds
+// `window` (in texels of the page), which must reach kWindowMargin beyond the rectangle.
 void derive_page(const VirtualMap& map, int level, const TexelRect& window, const double* heights_m,
                  const TexelRect& rect, HeightPage& out);
 
@@ -39,4 +41,4 @@ struct CubicWeights {
 };
 [[nodiscard]] CubicWeights catmull_rom(double f);
 
-} // namespace loam
+}  // namespace loam

@@ -10,41 +10,45 @@
 
 namespace loam {
 
-// Pages of the finest level composed for queries, heights alone; and the height bounds of such pages, for rays.
+// Pages of the finest level composed for queries, heights alone; and the height bounds of such pages, for
+// rays.
 class HeightQueryCache {
   public:
-    static constexpr size_t kPageLimit = 256;       // 18.5 KB each
-    static constexpr size_t kBoundsLimit = 1 << 18; // a 16.8 km map at 0.5 m has 275,625 pages
+    static constexpr size_t kPageLimit = 256;        // 18.5 KB each
+    static constexpr size_t kBoundsLimit = 1 << 18;  // a 16.8 km map at 0.5 m has 275,625 pages
 
     struct Bounds {
         float min_m, max_m;
     };
     // Composes what is absent. The pointer holds until the next call.
     const float* page(const Document& document, const VirtualMap& map, const MapPage& page);
-    // Between which heights the page's surface lies; need not be tight. `heights_m`: the page's, where they are at hand.
-    Bounds bounds(const Document& document, const VirtualMap& map, const MapPage& page, const float* heights_m);
+    // Between which heights the page's surface lies; need not be tight. `heights_m`: the page's, where they
+    // are at hand.
+    Bounds bounds(const Document& document, const VirtualMap& map, const MapPage& page,
+                  const float* heights_m);
     void drop(const VirtualMap& map, const WorldRect& rect);
     [[nodiscard]] uint64_t bytes() const;
 
-    std::mutex mutex; // held by whoever queries
+    std::mutex mutex;  // held by whoever queries
 
   private:
     struct Entry {
         MapPage page;
         std::vector<float> heights_m;
     };
-    std::list<Entry> pages_; // newest first
+    std::list<Entry> pages_;  // newest first
     std::unordered_map<MapPage, std::list<Entry>::iterator, MapPageHash> by_page_;
     std::unordered_map<MapPage, Bounds, MapPageHash> bounds_;
 };
 
 struct HeightMap::Impl {
-    Impl(const Document& d, const VirtualMapDesc& desc) : document(d), map(desc), slots(size_t(desc.slot_count)) {}
+    Impl(const Document& d, const VirtualMapDesc& desc)
+        : document(d), map(desc), slots(size_t(desc.slot_count)) {}
 
     struct Slot {
         HeightPage page;
-        std::vector<double> window_m; // kWindowTexels²
-        TexelRect changed;            // of the window, in texels of the page: heights to evaluate again
+        std::vector<double> window_m;  // kWindowTexels²
+        TexelRect changed;             // of the window, in texels of the page: heights to evaluate again
     };
 
     // Null: not resident, or dirty.
@@ -60,4 +64,4 @@ struct HeightMap::Impl {
     HeightQueryCache cache;
 };
 
-} // namespace loam
+}  // namespace loam

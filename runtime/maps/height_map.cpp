@@ -25,7 +25,7 @@ VirtualMapDesc map_desc(const Document& document, int slot_count) {
     return desc;
 }
 
-} // namespace
+}  // namespace
 
 HeightMap::HeightMap() = default;
 HeightMap::~HeightMap() = default;
@@ -42,7 +42,8 @@ Result<std::unique_ptr<HeightMap>> HeightMap::create(gpu::Device* device, const 
     image.width = image.height = kHeightTexels;
     image.layer_count = uint32_t(desc.slot_count);
     image.array_view = true;
-    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    image.usage =
+        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     image.name = "heights";
     image.format = VK_FORMAT_R32_SFLOAT;
     auto heights = gpu::Image::create(*device, image);
@@ -88,7 +89,8 @@ Status HeightMap::update(gpu::FrameRing& ring, gpu::Commands& commands, uint64_t
     }
     LOAM_TRY(cmd_upload_rects(ring, commands, impl_->heights, 4, heights));
     LOAM_TRY(cmd_upload_rects(ring, commands, impl_->normals, 8, normals));
-    commands.use({{impl_->heights, gpu::Access::graphics_read}, {impl_->normals, gpu::Access::graphics_read}});
+    commands.use(
+        {{impl_->heights, gpu::Access::graphics_read}, {impl_->normals, gpu::Access::graphics_read}});
     for (const VirtualMap::Work& w : work) impl_->map.finish(w);
     return {};
 }
@@ -124,8 +126,9 @@ uint32_t HeightMap::count_stale_pages(const Document& document) const {
         HeightPage fresh;
         compose(document, impl_->map, page, {0, 0, kHeightTexels, kHeightTexels}, fresh);
         const HeightPage& kept = impl_->slots[size_t(slot)].page;
-        const bool same = std::memcmp(fresh.heights_m.data(), kept.heights_m.data(), fresh.heights_m.size() * 4) == 0 &&
-                          fresh.normals == kept.normals && fresh.min_m == kept.min_m && fresh.max_m == kept.max_m;
+        const bool same =
+            std::memcmp(fresh.heights_m.data(), kept.heights_m.data(), fresh.heights_m.size() * 4) == 0 &&
+            fresh.normals == kept.normals && fresh.min_m == kept.min_m && fresh.max_m == kept.max_m;
         stale += same ? 0 : 1;
     });
     return stale;
@@ -143,9 +146,9 @@ uint64_t HeightMap::gpu_bytes() const {
 uint64_t HeightMap::cpu_bytes() const {
     uint64_t bytes = impl_->cache.bytes();
     for (const Impl::Slot& slot : impl_->slots)
-        bytes += slot.page.heights_m.capacity() * sizeof(float) + slot.page.normals.capacity() * sizeof(uint16_t) +
-                 slot.window_m.capacity() * sizeof(double);
+        bytes += slot.page.heights_m.capacity() * sizeof(float) +
+                 slot.page.normals.capacity() * sizeof(uint16_t) + slot.window_m.capacity() * sizeof(double);
     return bytes;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,8 +1,9 @@
 // Queries at the finest level: height, normal, rays.
 //
-// A ray walks the pages it passes over, skips those whose height bounds it does not meet, and within the others solves
-// for the bilinear surface of one cell after another: along a ray that surface's height is a quadratic in t, so hits are exact
-// to rounding. Bounds come from the base samples below a page, so that pages far from the ray are not composed.
+// A ray walks the pages it passes over, skips those whose height bounds it does not meet, and within the
+// others solves for the bilinear surface of one cell after another: along a ray that surface's height is a
+// quadratic in t, so hits are exact to rounding. Bounds come from the base samples below a page, so that
+// pages far from the ray are not composed.
 #include "runtime/base/units.h"
 #include "runtime/maps/height_compose.h"
 #include "runtime/maps/height_impl.h"
@@ -22,15 +23,16 @@ namespace {
 constexpr double kOvershoot = 0.28125;
 constexpr double kFarthest_m = 1e7;
 
-glm::ivec2 cell_counts(const Document& document) { // of the finest level; never 0
+glm::ivec2 cell_counts(const Document& document) {  // of the finest level; never 0
     const ProjectSettings& s = document.settings();
-    return glm::max(glm::ivec2(s.height_samples_x - 1, s.height_samples_y - 1) * (1 << s.refine), glm::ivec2(1));
+    return glm::max(glm::ivec2(s.height_samples_x - 1, s.height_samples_y - 1) * (1 << s.refine),
+                    glm::ivec2(1));
 }
 
 // A place in the finest samples: the cell's sample within its page, and where in the cell.
 struct Place {
     MapPage page;
-    int texel = 0; // of the cell's south-west sample
+    int texel = 0;  // of the cell's south-west sample
     double u = 0, v = 0;
 };
 
@@ -48,17 +50,20 @@ double bilinear(double a, double b, double c, double d, double u, double v) {
     return (a * (1 - u) + b * u) * (1 - v) + (c * (1 - u) + d * u) * v;
 }
 
-// Visits the cells (ix, iy) in [low, high) that x(t) = ox + dx t, y(t) = oy + dy t passes for t0 <= t <= t1, in order, with
-// the piece [ta, tb] in each; stops when `visit` says true.
+// Visits the cells (ix, iy) in [low, high) that x(t) = ox + dx t, y(t) = oy + dy t passes for t0 <= t <= t1,
+// in order, with the piece [ta, tb] in each; stops when `visit` says true.
 template <typename Visit>
-bool walk_cells(glm::dvec2 o, glm::dvec2 d, double t0, double t1, glm::ivec2 low, glm::ivec2 high, const Visit& visit) {
+bool walk_cells(glm::dvec2 o, glm::dvec2 d, double t0, double t1, glm::ivec2 low, glm::ivec2 high,
+                const Visit& visit) {
     glm::ivec2 cell;
-    for (int a = 0; a < 2; ++a) cell[a] = int(std::clamp(std::floor(o[a] + d[a] * t0), double(low[a]), double(high[a] - 1)));
+    for (int a = 0; a < 2; ++a)
+        cell[a] = int(std::clamp(std::floor(o[a] + d[a] * t0), double(low[a]), double(high[a] - 1)));
     double t = t0;
     while (true) {
         double leave[2];
         for (int a = 0; a < 2; ++a)
-            leave[a] = d[a] == 0 ? std::numeric_limits<double>::infinity() : (cell[a] + (d[a] > 0 ? 1 : 0) - o[a]) / d[a];
+            leave[a] = d[a] == 0 ? std::numeric_limits<double>::infinity()
+                                 : (cell[a] + (d[a] > 0 ? 1 : 0) - o[a]) / d[a];
         const int axis = leave[0] <= leave[1] ? 0 : 1;
         const double next = std::clamp(leave[axis], t, t1);
         if (visit(cell, t, next)) return true;
@@ -99,7 +104,7 @@ bool clip_to_map(glm::dvec2 o, glm::dvec2 d, glm::dvec2 size, double& t0, double
     return t0 <= t1;
 }
 
-} // namespace
+}  // namespace
 
 const float* HeightQueryCache::page(const Document& document, const VirtualMap& map, const MapPage& page) {
     if (const auto found = by_page_.find(page); found != by_page_.end()) {
@@ -136,13 +141,15 @@ HeightQueryCache::Bounds HeightQueryCache::bounds(const Document& document, cons
         result = {*low, *high};
     } else {
         const int shift = document.settings().refine;
-        const glm::ivec2 first = ((glm::ivec2(page.x, page.y) * kHeightPayload) >> shift) - (shift > 0 ? 1 : 0);
+        const glm::ivec2 first =
+            ((glm::ivec2(page.x, page.y) * kHeightPayload) >> shift) - (shift > 0 ? 1 : 0);
         const int count = shift > 0 ? (kHeightPayload >> shift) + 4 : kHeightPayload + 1;
         std::vector<int32_t> base(size_t(count) * size_t(count));
         document.read_heights_mm(0, first.x, first.y, count, count, base.data());
         const auto [low, high] = std::minmax_element(base.begin(), base.end());
         const double low_m = height_m_from_mm(*low), high_m = height_m_from_mm(*high);
-        const double beyond_m = (shift > 0 ? kOvershoot * (high_m - low_m) : 0) + 0.002; // and the rounding to floats
+        const double beyond_m =
+            (shift > 0 ? kOvershoot * (high_m - low_m) : 0) + 0.002;  // and the rounding to floats
         result = {float(low_m - beyond_m), float(high_m + beyond_m)};
     }
     if (bounds_.size() >= kBoundsLimit) bounds_.clear();
@@ -201,16 +208,18 @@ glm::dvec3 HeightMap::normal(double x_m, double y_m) {
     const std::lock_guard lock(impl_->cache.mutex);
     const Place p = place_at(impl_->map, cell_counts(impl_->document), x_m, y_m);
     const float* h = impl_->finest_heights(p.page) + p.texel;
-    const auto slope = [&](int step) { // of heights across one sample, in steps of `step` texels
+    const auto slope = [&](int step) {  // of heights across one sample, in steps of `step` texels
         const auto at = [&](int texel) { return double(h[texel + step]) - double(h[texel - step]); };
-        return bilinear(at(0), at(1), at(kHeightTexels), at(kHeightTexels + 1), p.u, p.v) / (2 * impl_->map.spacing_m(0));
+        return bilinear(at(0), at(1), at(kHeightTexels), at(kHeightTexels + 1), p.u, p.v) /
+               (2 * impl_->map.spacing_m(0));
     };
     return glm::normalize(glm::dvec3(-slope(1), -slope(kHeightTexels), 1.0));
 }
 
 std::optional<glm::dvec3> HeightMap::ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m) {
     const double length = glm::length(direction);
-    if (!(length > 0) || !std::isfinite(length) || !std::isfinite(glm::dot(origin_m, origin_m)) || !(max_m >= 0))
+    if (!(length > 0) || !std::isfinite(length) || !std::isfinite(glm::dot(origin_m, origin_m)) ||
+        !(max_m >= 0))
         return std::nullopt;
     const glm::dvec3 unit = direction / length;
     const double spacing = impl_->map.spacing_m(0);
@@ -223,9 +232,11 @@ std::optional<glm::dvec3> HeightMap::ray_cast(glm::dvec3 origin_m, glm::dvec3 di
     std::optional<double> hit;
     const auto visit_page = [&](glm::ivec2 page_at, double from, double to) {
         const MapPage page{0, page_at.x, page_at.y};
-        const HeightQueryCache::Bounds bounds = impl_->cache.bounds(impl_->document, impl_->map, page, impl_->clean_heights(page));
+        const HeightQueryCache::Bounds bounds =
+            impl_->cache.bounds(impl_->document, impl_->map, page, impl_->clean_heights(page));
         const double z0 = origin_m.z + unit.z * from, z1 = origin_m.z + unit.z * to;
-        if (std::min(z0, z1) > double(bounds.max_m) + 1e-3 || std::max(z0, z1) < double(bounds.min_m) - 1e-3) return false;
+        if (std::min(z0, z1) > double(bounds.max_m) + 1e-3 || std::max(z0, z1) < double(bounds.min_m) - 1e-3)
+            return false;
 
         const float* heights_m = impl_->finest_heights(page);
         const glm::ivec2 first = page_at * kHeightPayload;
@@ -235,7 +246,8 @@ std::optional<glm::dvec3> HeightMap::ray_cast(glm::dvec3 origin_m, glm::dvec3 di
             const double h00 = h[0], h10 = h[1], h01 = h[kHeightTexels], h11 = h[kHeightTexels + 1];
             // Ground at (u, v) = h00 + du u + dv v + duv u v, with u, v and z linear in s = t - ta.
             const double du = h10 - h00, dv = h01 - h00, duv = h00 + h11 - h10 - h01;
-            const double u = o.x + d.x * ta - cell.x, v = o.y + d.y * ta - cell.y, z = origin_m.z + unit.z * ta;
+            const double u = o.x + d.x * ta - cell.x, v = o.y + d.y * ta - cell.y,
+                         z = origin_m.z + unit.z * ta;
             const double a = -duv * d.x * d.y;
             const double b = unit.z - du * d.x - dv * d.y - duv * (u * d.y + v * d.x);
             const double c = z - h00 - du * u - dv * v - duv * u * v;
@@ -253,4 +265,4 @@ std::optional<glm::dvec3> HeightMap::ray_cast(glm::dvec3 origin_m, glm::dvec3 di
     return origin_m + unit * *hit;
 }
 
-} // namespace loam
+}  // namespace loam

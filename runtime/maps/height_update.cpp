@@ -1,8 +1,9 @@
 // Composing what a frame planned, in two steps over all cores.
 //
-//  1. Heights. A new page's whole window; of an edited page only the heights that changed. Windows of neighbouring pages overlap
-//     (they are 100² for 64²), and operators are what is dear, so changed heights of one level are evaluated once
-//     over the rectangle around all of them where that is less than one by one.
+//  1. Heights. A new page's whole window; of an edited page only the heights that changed. Windows of
+//  neighbouring pages overlap
+//     (they are 100² for 64²), and operators are what is dear, so changed heights of one level are evaluated
+//     once over the rectangle around all of them where that is less than one by one.
 //  2. Normals and occlusion of the dirty texels, from the windows.
 // A sample depends on its place only, so how the work is cut up does not show in any bit.
 #include "runtime/base/job_queue.h"
@@ -19,7 +20,7 @@ struct Patch {
     TexelRect rect;
     std::vector<double> heights_m;
 };
-constexpr int kPatchRows = 32; // a job's, so that one large edit occupies all cores
+constexpr int kPatchRows = 32;  // a job's, so that one large edit occupies all cores
 // Less than this many samples or texels is done on the calling thread: starting another takes as long.
 constexpr int64_t kSmall = 2000;
 
@@ -47,14 +48,15 @@ void copy_into(std::vector<double>& window_m, const MapPage& page, const std::ve
         if (patch.level != page.level) continue;
         const TexelRect both = intersected(patch.rect, window);
         for (int y = both.y0; y < both.y1; ++y) {
-            const double* from = patch.heights_m.data() + int64_t(y - patch.rect.y0) * patch.rect.width() + both.x0 - patch.rect.x0;
+            const double* from = patch.heights_m.data() + int64_t(y - patch.rect.y0) * patch.rect.width() +
+                                 both.x0 - patch.rect.x0;
             double* to = window_m.data() + int64_t(y - origin.y) * kWindowTexels + both.x0 - origin.x;
             std::copy_n(from, std::max(both.width(), 0), to);
         }
     }
 }
 
-} // namespace
+}  // namespace
 
 std::vector<VirtualMap::Work> HeightMap::Impl::compose_planned(uint64_t frame, int new_pages) {
     const std::vector<VirtualMap::Work> work = map.plan(frame, new_pages);
@@ -99,4 +101,4 @@ std::vector<VirtualMap::Work> HeightMap::Impl::compose_planned(uint64_t frame, i
     return work;
 }
 
-} // namespace loam
+}  // namespace loam

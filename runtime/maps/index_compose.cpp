@@ -5,12 +5,13 @@
 
 namespace loam {
 
-void IndexMap::compose(const Document& document, const VirtualMap& map, const MapPage& page, const TexelRect& rect,
-                       std::span<IndexTexel> out) {
+void IndexMap::compose(const Document& document, const VirtualMap& map, const MapPage& page,
+                       const TexelRect& rect, std::span<IndexTexel> out) {
     LOAM_CHECK(out.size() == size_t(kIndexTexels) * kIndexTexels, "an index page has 136 x 136 texels");
     LOAM_CHECK(rect == intersected(rect, {0, 0, kIndexTexels, kIndexTexels}), "rectangle beyond the page");
     if (rect.empty()) return;
-    const glm::ivec2 first(page.x * kIndexPayload - kIndexBorder + rect.x0, page.y * kIndexPayload - kIndexBorder + rect.y0);
+    const glm::ivec2 first(page.x * kIndexPayload - kIndexBorder + rect.x0,
+                           page.y * kIndexPayload - kIndexBorder + rect.y0);
     const glm::ivec2 size(rect.width(), rect.height());
     thread_local std::vector<IndexTexel> texels;
     texels.resize(size_t(rect.area()));
@@ -21,7 +22,8 @@ void IndexMap::compose(const Document& document, const VirtualMap& map, const Ma
     const glm::dvec2 low(double(first.x) * spacing, double(first.y) * spacing);
     thread_local std::vector<const Operator*> operators;
     operators.clear();
-    document.operators_over_index({low.x, low.y, low.x + (size.x - 1) * spacing, low.y + (size.y - 1) * spacing}, operators);
+    document.operators_over_index(
+        {low.x, low.y, low.x + (size.x - 1) * spacing, low.y + (size.y - 1) * spacing}, operators);
     const ResolvedRoles roles = document.roles();
     const SampleGrid<IndexTexel> grid{texels.data(), size.x, size.y, size.x, low.x, low.y, spacing};
     for (const Operator* op : operators) apply_index(*op, roles, grid);
@@ -31,4 +33,4 @@ void IndexMap::compose(const Document& document, const VirtualMap& map, const Ma
                     out.begin() + ptrdiff_t(rect.y0 + j) * kIndexTexels + rect.x0);
 }
 
-} // namespace loam
+}  // namespace loam

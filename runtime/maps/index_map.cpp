@@ -14,7 +14,7 @@ namespace loam {
 namespace {
 
 constexpr size_t kPageTexels = size_t(kIndexTexels) * kIndexTexels;
-constexpr int64_t kParallelTexels = 30'000; // an index page takes about 0.1 ms
+constexpr int64_t kParallelTexels = 30'000;  // an index page takes about 0.1 ms
 
 struct IndexPage {
     std::vector<IndexTexel> texels;
@@ -35,7 +35,8 @@ VirtualMapDesc map_desc(const Document& document, int slot_count) {
     return desc;
 }
 
-void compose_page(const Document& document, const VirtualMap& map, const VirtualMap::Work& work, IndexPage& page) {
+void compose_page(const Document& document, const VirtualMap& map, const VirtualMap::Work& work,
+                  IndexPage& page) {
     page.texels.resize(kPageTexels);
     page.layers.resize(kPageTexels);
     page.tints.resize(kPageTexels);
@@ -49,17 +50,18 @@ void compose_page(const Document& document, const VirtualMap& map, const Virtual
         }
 }
 
-} // namespace
+}  // namespace
 
 struct IndexMap::Impl {
-    Impl(const Document& d, const VirtualMapDesc& desc) : document(d), map(desc), pages(size_t(desc.slot_count)) {}
+    Impl(const Document& d, const VirtualMapDesc& desc)
+        : document(d), map(desc), pages(size_t(desc.slot_count)) {}
 
     std::vector<VirtualMap::Work> compose_planned(uint64_t frame, int new_pages);
     Status cmd_update_table(gpu::FrameRing& ring, gpu::Commands& commands);
 
     const Document& document;
     VirtualMap map;
-    std::vector<IndexPage> pages; // one a slot
+    std::vector<IndexPage> pages;  // one a slot
     gpu::Image indices, tints;
     gpu::Buffer page_table;
     bool table_cleared = false;
@@ -80,7 +82,8 @@ Result<std::unique_ptr<IndexMap>> IndexMap::create(gpu::Device* device, const Do
     image.width = image.height = kIndexTexels;
     image.layer_count = uint32_t(desc.slot_count);
     image.array_view = true;
-    image.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
+    image.usage =
+        VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT;
     image.name = "layer indices";
     image.format = VK_FORMAT_R16_UINT;
     auto indices = gpu::Image::create(*device, image);
@@ -148,7 +151,8 @@ Status IndexMap::Impl::cmd_update_table(gpu::FrameRing& ring, gpu::Commands& com
         std::memcpy(static_cast<std::byte*>(slice.data) + offset, &slot, sizeof slot);
         copies.push_back({slice.offset + offset, uint64_t(entry) * sizeof(uint32_t), sizeof slot});
     }
-    vkCmdCopyBuffer(commands.handle(), slice.buffer->handle(), page_table.handle(), uint32_t(copies.size()), copies.data());
+    vkCmdCopyBuffer(commands.handle(), slice.buffer->handle(), page_table.handle(), uint32_t(copies.size()),
+                    copies.data());
     return {};
 }
 
@@ -209,11 +213,13 @@ IndexTexel IndexMap::texel_at(double x_m, double y_m) {
     const VirtualMap& map = impl_->map;
     const glm::ivec2 last = impl_->document.index_size_texels() - 1;
     const auto nearest = [&](double metres, int limit) {
-        return std::isnan(metres) ? 0 : int(std::clamp(std::floor(metres / map.spacing_m(0) + 0.5), 0.0, double(limit)));
+        return std::isnan(metres)
+                   ? 0
+                   : int(std::clamp(std::floor(metres / map.spacing_m(0) + 0.5), 0.0, double(limit)));
     };
     const glm::ivec2 sample(nearest(x_m, last.x), nearest(y_m, last.y));
     MapPage page{0, sample.x / kIndexPayload, sample.y / kIndexPayload};
-    page.x = std::min(page.x, map.pages_x(0) - 1); // the last sample may be the far edge of the last page
+    page.x = std::min(page.x, map.pages_x(0) - 1);  // the last sample may be the far edge of the last page
     page.y = std::min(page.y, map.pages_y(0) - 1);
     const glm::ivec2 texel = sample - glm::ivec2(page.x, page.y) * kIndexPayload + kIndexBorder;
     const size_t at = size_t(texel.y) * kIndexTexels + size_t(texel.x);
@@ -236,7 +242,8 @@ uint32_t IndexMap::count_stale_pages(const Document& document) const {
 }
 
 uint64_t IndexMap::gpu_bytes() const {
-    return impl_->indices ? impl_->indices.bytes() + impl_->tints.bytes() + impl_->page_table.size_bytes() : 0;
+    return impl_->indices ? impl_->indices.bytes() + impl_->tints.bytes() + impl_->page_table.size_bytes()
+                          : 0;
 }
 
-} // namespace loam
+}  // namespace loam

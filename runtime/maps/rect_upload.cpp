@@ -5,11 +5,12 @@
 
 namespace loam {
 
-Status cmd_upload_rects(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& image, uint32_t texel_bytes,
-                        std::span<const RectUpload> uploads) {
+Status cmd_upload_rects(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& image,
+                        uint32_t texel_bytes, std::span<const RectUpload> uploads) {
     const auto aligned = [](uint64_t bytes) { return (bytes + 15) & ~uint64_t(15); };
     uint64_t total_bytes = 0;
-    for (const RectUpload& upload : uploads) total_bytes += aligned(uint64_t(upload.rect.area()) * texel_bytes);
+    for (const RectUpload& upload : uploads)
+        total_bytes += aligned(uint64_t(upload.rect.area()) * texel_bytes);
     if (total_bytes == 0) return {};
     const gpu::UploadSlice slice = ring.upload(total_bytes);
     if (!slice.data) return error("no memory for an upload of {} bytes", total_bytes);
@@ -38,4 +39,4 @@ Status cmd_upload_rects(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Imag
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,4 +1,5 @@
-// Rectangles of CPU pages into layers of an array image: one piece of upload memory and one copy command for all of them.
+// Rectangles of CPU pages into layers of an array image: one piece of upload memory and one copy command for
+// all of them.
 #pragma once
 
 #include <cstddef>
@@ -14,11 +15,11 @@ namespace loam {
 struct RectUpload {
     TexelRect rect;
     uint32_t layer = 0;
-    const void* texels = nullptr; // of the whole page, image.width() texels a row
+    const void* texels = nullptr;  // of the whole page, image.width() texels a row
 };
 
 // Leaves the image in use as Access::copy_target. The rectangles of one layer must not overlap.
-Status cmd_upload_rects(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& image, uint32_t texel_bytes,
-                        std::span<const RectUpload> uploads);
+Status cmd_upload_rects(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& image,
+                        uint32_t texel_bytes, std::span<const RectUpload> uploads);
 
-} // namespace loam
+}  // namespace loam

@@ -10,8 +10,8 @@ namespace loam {
 
 namespace {
 
-// Sample positions are products that may be rounded; a rectangle's edge is taken to include samples this share of a
-// spacing beyond it.
+// Sample positions are products that may be rounded; a rectangle's edge is taken to include samples this
+// share of a spacing beyond it.
 constexpr double kHair = 1e-4;
 
 int pages_across(double extent_m, double page_size_m) {
@@ -27,7 +27,7 @@ std::pair<int, int> samples_in(double low_m, double high_m, double spacing_m) {
             static_cast<int>(std::clamp(last + 1, -kLimit, kLimit))};
 }
 
-} // namespace
+}  // namespace
 
 VirtualMap::VirtualMap(const VirtualMapDesc& desc) : desc_(desc), slots_(size_t(desc.slot_count)) {
     LOAM_CHECK(desc.payload_texels > 0 && desc.border_texels >= 0, "a page needs texels");
@@ -83,9 +83,11 @@ void VirtualMap::request(const MapPage& page, float priority) {
     wanted = std::max(wanted, std::clamp(priority, FLT_MIN, FLT_MAX));
 }
 
-// Marks the resident pages that were requested and returns the absent ones, most wanted first: the `missing_limit` first of
-// them. The order does not depend on the hash table's, so that every run makes the same choices.
-std::vector<std::pair<MapPage, float>> VirtualMap::take_requests(size_t missing_limit, size_t& missing_count) {
+// Marks the resident pages that were requested and returns the absent ones, most wanted first: the
+// `missing_limit` first of them. The order does not depend on the hash table's, so that every run makes the
+// same choices.
+std::vector<std::pair<MapPage, float>> VirtualMap::take_requests(size_t missing_limit,
+                                                                 size_t& missing_count) {
     std::vector<std::pair<MapPage, float>> missing;
     requests_[root()] = FLT_MAX;
     for (const auto& [page, priority] : requests_) {
@@ -128,7 +130,8 @@ int VirtualMap::least_wanted_slot() const {
         if (!slot.in_table || slot.page == root()) continue;
         if (worst < 0) worst = i;
         const Slot& other = slots_[size_t(worst)];
-        if (std::pair(slot.priority, slot.last_requested) < std::pair(other.priority, other.last_requested)) worst = i;
+        if (std::pair(slot.priority, slot.last_requested) < std::pair(other.priority, other.last_requested))
+            worst = i;
     }
     return worst;
 }
@@ -152,8 +155,8 @@ std::vector<VirtualMap::Work> VirtualMap::plan(uint64_t frame, int new_pages) {
     drop_unfinished();
     for (Slot& slot : slots_) slot.priority = 0;
 
-    // A slot ejected now can be filled in kSlotRestFrames frames: so room is made for as many pages ahead as will be composed
-    // until then, and composing never stalls.
+    // A slot ejected now can be filled in kSlotRestFrames frames: so room is made for as many pages ahead as
+    // will be composed until then, and composing never stalls.
     const size_t ahead = size_t(new_pages) * (kSlotRestFrames + 1);
     size_t missing_count = 0;
     const auto missing = take_requests(ahead, missing_count);
@@ -174,8 +177,10 @@ std::vector<VirtualMap::Work> VirtualMap::plan(uint64_t frame, int new_pages) {
     size_t resting_count = 0;
     for (int i = desc_.slot_count - 1; i >= 0; --i) {
         if (slots_[size_t(i)].used) continue;
-        if (slots_[size_t(i)].free_from_frame <= frame) free_slots.push_back(i);
-        else ++resting_count;
+        if (slots_[size_t(i)].free_from_frame <= frame)
+            free_slots.push_back(i);
+        else
+            ++resting_count;
     }
 
     int composed = 0, ejected = 0;
@@ -183,7 +188,7 @@ std::vector<VirtualMap::Work> VirtualMap::plan(uint64_t frame, int new_pages) {
     for (const auto& [page, priority] : missing) {
         if (!free_slots.empty()) {
             waiting = true;
-            if (composed == new_pages) { // kept for the frames to come
+            if (composed == new_pages) {  // kept for the frames to come
                 free_slots.pop_back();
                 continue;
             }
@@ -204,7 +209,9 @@ std::vector<VirtualMap::Work> VirtualMap::plan(uint64_t frame, int new_pages) {
         } else if (ejected < new_pages) {
             const int victim = least_wanted_slot();
             if (victim < 0) break;
-            if (double(slots_[size_t(victim)].priority) * (1.0 + double(desc_.hysteresis)) >= double(priority)) break;
+            if (double(slots_[size_t(victim)].priority) * (1.0 + double(desc_.hysteresis)) >=
+                double(priority))
+                break;
             eject(victim);
             ++ejected;
             waiting = true;
@@ -234,7 +241,8 @@ TexelRect VirtualMap::texels_in(const MapPage& page, const WorldRect& rect) cons
     const int first_x = page.x * desc_.payload_texels - desc_.border_texels;
     const int first_y = page.y * desc_.payload_texels - desc_.border_texels;
     const TexelRect texels{x0 - first_x, y0 - first_y, x1 - first_x, y1 - first_y};
-    return texels.empty() ? TexelRect{} : texels; // a rectangle between the samples of this level changes none of them
+    return texels.empty() ? TexelRect{}
+                          : texels;  // a rectangle between the samples of this level changes none of them
 }
 
 int VirtualMap::invalidate(const WorldRect& rect, int grow_texels) {
@@ -273,4 +281,4 @@ uint32_t VirtualMap::table_entry_count() const {
     return level_offsets_.back();
 }
 
-} // namespace loam
+}  // namespace loam

@@ -41,12 +41,13 @@ struct Axes {
 };
 
 Axes axes(double yaw, double pitch) {
-    const glm::dvec3 forward(std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch), std::sin(pitch));
+    const glm::dvec3 forward(std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch),
+                             std::sin(pitch));
     const glm::dvec3 right(std::cos(yaw), -std::sin(yaw), 0);
     return {right, glm::cross(forward, right), forward};
 }
 
-glm::dmat4 clip_from_rel(const Axes& a) { // reversed Z, infinite far plane
+glm::dmat4 clip_from_rel(const Axes& a) {  // reversed Z, infinite far plane
     const double f = 1 / std::tan(kFov_rad / 2), aspect = double(kWidth) / kHeight;
     return glm::transpose(glm::dmat4(glm::dvec4(a.right * f / aspect, 0), glm::dvec4(a.down * f, 0),
                                      glm::dvec4(0, 0, 0, kNear_m), glm::dvec4(a.forward, 0)));
@@ -83,7 +84,8 @@ class Scene {
         desc.name = "depth copy";
         desc.size_bytes = kWidth * kHeight * 8;
         depth_copy = need(gpu::Buffer::create(test_device(), desc));
-        terrain = need(TerrainPass::create(test_device(), {gbuffer.format(), occlusion.format()}, depth_format));
+        terrain =
+            need(TerrainPass::create(test_device(), {gbuffer.format(), occlusion.format()}, depth_format));
     }
 
     void settle(const PatchView& view) {
@@ -133,19 +135,25 @@ class Scene {
             const gpu::ColorTarget colors[] = {{gbuffer.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}},
                                                {occlusion.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}}};
             commands.begin_rendering({kWidth, kHeight}, colors, depth_target);
-            terrain.cmd_draw_prepass(commands, picture.patches, *heights, glm::mat4(view.clip_from_rel), view.camera_m);
+            terrain.cmd_draw_prepass(commands, picture.patches, *heights, glm::mat4(view.clip_from_rel),
+                                     view.camera_m);
             commands.end_rendering();
         }
         commands.use({{target, Access::copy_source}, {depth_copy, Access::copy_target}});
         copy_aspect(commands, target, VK_IMAGE_ASPECT_DEPTH_BIT, 0);
         if (!as_shadow) copy_aspect(commands, target, VK_IMAGE_ASPECT_STENCIL_BIT, kWidth * kHeight * 4);
-        ring->read_back(commands, depth_copy, 0, depth_copy.size_bytes(), [&](std::span<const std::byte> bytes) {
-            picture.depth = copied<float>(bytes.first(kWidth * kHeight * 4));
-            picture.stencil = copied<uint8_t>(bytes.subspan(kWidth * kHeight * 4, kWidth * kHeight));
-        });
+        ring->read_back(
+            commands, depth_copy, 0, depth_copy.size_bytes(), [&](std::span<const std::byte> bytes) {
+                picture.depth = copied<float>(bytes.first(kWidth * kHeight * 4));
+                picture.stencil = copied<uint8_t>(bytes.subspan(kWidth * kHeight * 4, kWidth * kHeight));
+            });
         if (!as_shadow) {
-            ring->read_back(commands, gbuffer, [&](std::span<const std::byte> bytes) { picture.gbuffer = copied<uint16_t>(bytes); });
-            ring->read_back(commands, occlusion, [&](std::span<const std::byte> bytes) { picture.occlusion = copied<uint8_t>(bytes); });
+            ring->read_back(commands, gbuffer, [&](std::span<const std::byte> bytes) {
+                picture.gbuffer = copied<uint16_t>(bytes);
+            });
+            ring->read_back(commands, occlusion, [&](std::span<const std::byte> bytes) {
+                picture.occlusion = copied<uint8_t>(bytes);
+            });
         }
         need(ring->finish(*frame));
         return picture;
@@ -180,7 +188,8 @@ TEST_F(Geometry, APictureFromAboveHasNoHoleAndTheHeightsOfTheQueries) {
     const Picture picture = scene.draw(view);
     ASSERT_EQ(picture.depth.size(), kWidth * kHeight);
     std::set<uint32_t> levels;
-    for (int i = 0; i < picture.patches.visible_count; ++i) levels.insert(picture.patches.patches[size_t(i)].level);
+    for (int i = 0; i < picture.patches.visible_count; ++i)
+        levels.insert(picture.patches.patches[size_t(i)].level);
     EXPECT_GE(levels.size(), 2u);
 
     double worst_m = 0;
@@ -208,11 +217,13 @@ TEST_F(Geometry, APictureFromAboveHasNoHoleAndTheHeightsOfTheQueries) {
 }
 
 TEST_F(Geometry, NearTheHorizonNothingIsNanAndTheMapsEdgeIsSharp) {
-    test::MapFixture ground({.samples_x = 300, .samples_y = 280, .height_spacing_m = 1.3, .refine = 1, .relief_m = 3});
+    test::MapFixture ground(
+        {.samples_x = 300, .samples_y = 280, .height_spacing_m = 1.3, .refine = 1, .relief_m = 3});
     Scene scene(ground.document());
     const WorldRect bounds = ground.document().bounds();
     PatchView view;
-    view.camera_m = {bounds.max_x - 3, bounds.max_y - 4, scene.heights->height_m(bounds.max_x - 3, bounds.max_y - 4) + 0.01};
+    view.camera_m = {bounds.max_x - 3, bounds.max_y - 4,
+                     scene.heights->height_m(bounds.max_x - 3, bounds.max_y - 4) + 0.01};
     for (const double pitch : {0.0, -0.3, -1.2}) {
         const Axes a = axes(0.8, pitch);
         view.clip_from_rel = clip_from_rel(a);
@@ -256,7 +267,7 @@ TEST_F(Geometry, TheArraysHoldWhatTheCpuHas) {
     view.camera_m = {200, 200, 60};
     view.clip_from_rel = clip_from_rel(axes(0.4, -0.6));
     scene.settle(view);
-    for (int i = 0; i < 8; ++i) { // rectangles of edits
+    for (int i = 0; i < 8; ++i) {  // rectangles of edits
         const Dirt dirt = ground.random_command();
         scene.heights->on_dirt(dirt.height);
         scene.indices->on_dirt(dirt.index);
@@ -305,5 +316,5 @@ TEST_F(Geometry, TheArraysHoldWhatTheCpuHas) {
             }
 }
 
-} // namespace
-} // namespace loam
+}  // namespace
+}  // namespace loam

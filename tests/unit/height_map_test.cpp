@@ -19,11 +19,12 @@ using test::MapFixtureDesc;
 
 constexpr TexelRect kWhole{0, 0, kHeightTexels, kHeightTexels};
 // 0.3 m and 7.7 m are not exact in binary: positions and levels must agree all the same.
-const MapFixtureDesc kGrounds[] = {{},
-                                   {.samples_x = 257, .samples_y = 129, .refine = 0},
-                                   {.samples_x = 131, .samples_y = 200, .height_spacing_m = 0.3, .refine = 1},
-                                   {.samples_x = 70, .samples_y = 90, .height_spacing_m = 7.7, .refine = 4},
-                                   {.samples_x = 700, .samples_y = 333, .height_spacing_m = 0.3, .refine = 0}};
+const MapFixtureDesc kGrounds[] = {
+    {},
+    {.samples_x = 257, .samples_y = 129, .refine = 0},
+    {.samples_x = 131, .samples_y = 200, .height_spacing_m = 0.3, .refine = 1},
+    {.samples_x = 70, .samples_y = 90, .height_spacing_m = 7.7, .refine = 4},
+    {.samples_x = 700, .samples_y = 333, .height_spacing_m = 0.3, .refine = 0}};
 
 std::unique_ptr<HeightMap> cpu_map(const Document& document, int slot_count = 144) {
     auto map = HeightMap::create(nullptr, document, {.slot_count = slot_count, .gpu = false});
@@ -39,8 +40,8 @@ void add_craters(MapFixture& ground, int count) {
 }
 
 bool same_page(const HeightPage& a, const HeightPage& b) {
-    return std::memcmp(a.heights_m.data(), b.heights_m.data(), a.heights_m.size() * 4) == 0 && a.normals == b.normals &&
-           a.min_m == b.min_m && a.max_m == b.max_m;
+    return std::memcmp(a.heights_m.data(), b.heights_m.data(), a.heights_m.size() * 4) == 0 &&
+           a.normals == b.normals && a.min_m == b.min_m && a.max_m == b.max_m;
 }
 
 TEST(HeightCompose, ARectangleEqualsTheWholePage) {
@@ -57,7 +58,8 @@ TEST(HeightCompose, ARectangleEqualsTheWholePage) {
             for (int y = rect.y0; y < rect.y1; ++y)
                 for (int x = rect.x0; x < rect.x1; ++x) {
                     pieces.heights_m[size_t(y * kHeightTexels + x)] = -1e9f;
-                    for (int c = 0; c < 4; ++c) pieces.normals[size_t((y * kHeightTexels + x) * 4 + c)] = 0x1234;
+                    for (int c = 0; c < 4; ++c)
+                        pieces.normals[size_t((y * kHeightTexels + x) * 4 + c)] = 0x1234;
                 }
             HeightMap::compose(ground.document(), map->map(), page, rect, pieces);
             ASSERT_TRUE(same_page(whole, pieces)) << "level " << page.level;
@@ -76,21 +78,25 @@ TEST(HeightCompose, NeighboursAndLevelsAgreeOnSharedSamples) {
             HeightPage coarse, fine;
             HeightMap::compose(ground.document(), map->map(), page, kWhole, coarse);
             for (int k = 0; k < 12; ++k) {
-                const glm::ivec2 t(ground.uniform(0, kHeightTexels - 1), ground.uniform(0, kHeightTexels - 1));
-                const glm::ivec2 sample = (glm::ivec2(page.x, page.y) * kHeightPayload + t - kHeightBorder) << page.level;
+                const glm::ivec2 t(ground.uniform(0, kHeightTexels - 1),
+                                   ground.uniform(0, kHeightTexels - 1));
+                const glm::ivec2 sample = (glm::ivec2(page.x, page.y) * kHeightPayload + t - kHeightBorder)
+                                          << page.level;
                 // Any page of a finer or equal level, as long as the sample is in its payload or border.
                 const int level = ground.uniform(0, page.level);
                 const glm::ivec2 s = sample >> level;
                 MapPage other{level, std::clamp(s.x / kHeightPayload, 0, map->map().pages_x(level) - 1),
                               std::clamp(s.y / kHeightPayload, 0, map->map().pages_y(level) - 1)};
-                if (ground.uniform(0, 1) && s.x % kHeightPayload < 2 && other.x > 0) --other.x; // its far border
+                if (ground.uniform(0, 1) && s.x % kHeightPayload < 2 && other.x > 0)
+                    --other.x;  // its far border
                 const glm::ivec2 u = s - glm::ivec2(other.x, other.y) * kHeightPayload + kHeightBorder;
                 if (u.x < 0 || u.y < 0 || u.x >= kHeightTexels || u.y >= kHeightTexels) continue;
                 HeightMap::compose(ground.document(), map->map(), other, {u.x, u.y, u.x + 1, u.y + 1}, fine);
                 const float a = coarse.heights_m[size_t(t.y * kHeightTexels + t.x)];
                 const float b = fine.heights_m[size_t(u.y * kHeightTexels + u.x)];
                 ASSERT_EQ(std::bit_cast<uint32_t>(a), std::bit_cast<uint32_t>(b))
-                    << "level " << page.level << " and " << level << " at sample " << sample.x << ", " << sample.y;
+                    << "level " << page.level << " and " << level << " at sample " << sample.x << ", "
+                    << sample.y;
             }
         }
     }
@@ -107,11 +113,13 @@ TEST(HeightCompose, SamplesOfTheBaseAreKept) {
             const auto lock = ground.document().read_lock();
             for (int y = 0; y < kHeightTexels; ++y)
                 for (int x = 0; x < kHeightTexels; ++x) {
-                    const glm::ivec2 sample = (glm::ivec2(page.x, page.y) * kHeightPayload + glm::ivec2(x, y) - kHeightBorder)
-                                              << page.level;
+                    const glm::ivec2 sample =
+                        (glm::ivec2(page.x, page.y) * kHeightPayload + glm::ivec2(x, y) - kHeightBorder)
+                        << page.level;
                     if (((sample.x | sample.y) & ((1 << desc.refine) - 1)) != 0) continue;
                     int32_t mm = 0;
-                    ground.document().read_heights_mm(0, sample.x >> desc.refine, sample.y >> desc.refine, 1, 1, &mm);
+                    ground.document().read_heights_mm(0, sample.x >> desc.refine, sample.y >> desc.refine, 1,
+                                                      1, &mm);
                     ASSERT_EQ(composed.heights_m[size_t(y * kHeightTexels + x)], float(mm * kHeightStep_m));
                 }
         }
@@ -199,7 +207,8 @@ TEST(HeightMap, PagesAfterAnyHistoryEqualPagesFromNothing) {
         }
         refresh(*map, frame);
         EXPECT_EQ(map->count_stale_pages(ground.document()), 0u);
-        map->map().for_each_resident([&](const MapPage&, int, const TexelRect& dirty) { EXPECT_TRUE(dirty.empty()); });
+        map->map().for_each_resident(
+            [&](const MapPage&, int, const TexelRect& dirty) { EXPECT_TRUE(dirty.empty()); });
         // Negative control: dirt that is lost shows.
         const WorldRect b = ground.document().bounds();
         ground.crater(b.center().x, b.center().y, 20);
@@ -240,7 +249,8 @@ TEST(HeightMap, QueriesSeeEditsAtOnceAndTakeAnyPlace) {
 }
 
 // Small steps, then bisection: slow and simple.
-std::optional<double> brute_ray(HeightMap& map, const WorldRect& bounds, glm::dvec3 o, glm::dvec3 d, double max_m) {
+std::optional<double> brute_ray(HeightMap& map, const WorldRect& bounds, glm::dvec3 o, glm::dvec3 d,
+                                double max_m) {
     const auto above = [&](double t) {
         const glm::dvec3 p = o + d * t;
         return p.z - map.height_m(p.x, p.y);
@@ -276,7 +286,8 @@ TEST(HeightMap, RaysHitWhereBruteForceDoes) {
     for (int i = 0; i < 150; ++i) {
         const glm::dvec2 at = ground.place();
         const glm::dvec3 o(at, ground.real(-6, 12));
-        glm::dvec3 d = glm::normalize(glm::dvec3(ground.real(-1, 1), ground.real(-1, 1), ground.real(-0.4, 0.1)));
+        glm::dvec3 d =
+            glm::normalize(glm::dvec3(ground.real(-1, 1), ground.real(-1, 1), ground.real(-0.4, 0.1)));
         if (i % 10 == 0) d = {0, 0, -1};
         if (i % 10 == 1) d = glm::normalize(glm::dvec3(d.x, d.y, 0));
         if (i % 10 == 2) d = {1, 0, 0};
@@ -286,7 +297,7 @@ TEST(HeightMap, RaysHitWhereBruteForceDoes) {
         if (hit) {
             EXPECT_NEAR(hit->z, map->height_m(hit->x, hit->y), 1e-6);
         }
-        if (!slow) { // brute force may step over a graze shorter than its step
+        if (!slow) {  // brute force may step over a graze shorter than its step
             ++misses;
             if (hit) {
                 const double t = glm::distance(*hit, o);
@@ -299,7 +310,7 @@ TEST(HeightMap, RaysHitWhereBruteForceDoes) {
         ASSERT_TRUE(hit.has_value()) << i;
         const double t = glm::distance(*hit, o);
         EXPECT_LE(t, *slow + 1e-6);
-        if (t < *slow - 1e-3) { // an earlier graze
+        if (t < *slow - 1e-3) {  // an earlier graze
             const glm::dvec3 q = o + d * (t + 0.01);
             EXPECT_LT(std::abs(q.z - map->height_m(q.x, q.y)), 0.05);
         }
@@ -321,12 +332,12 @@ TEST(HeightMap, RaysOfAnyKindAreTaken) {
     EXPECT_FALSE(map->ray_cast({50, 50, 100}, {0, 0, -1}, -1));
     EXPECT_FALSE(map->ray_cast({50, 50, 100}, {0, 0, 1}, INFINITY));
     EXPECT_FALSE(map->ray_cast({50, 50, ground_m + 10}, {0, 0, -1}, 9.99));
-    EXPECT_FALSE(map->ray_cast({-50, 50, 100}, {0, 0, -1}, 1000)); // beside the map
+    EXPECT_FALSE(map->ray_cast({-50, 50, 100}, {0, 0, -1}, 1000));  // beside the map
     EXPECT_FALSE(map->ray_cast({-50, 50, 100}, {-1, 0, -0.1}, 1000));
     const auto down = map->ray_cast({50, 50, 100}, {0, 0, -1}, INFINITY);
     ASSERT_TRUE(down);
     EXPECT_NEAR(down->z, ground_m, 1e-9);
-    const auto up = map->ray_cast({50, 50, ground_m - 5}, {0, 0, 1}, 100); // from below the ground
+    const auto up = map->ray_cast({50, 50, ground_m - 5}, {0, 0, 1}, 100);  // from below the ground
     ASSERT_TRUE(up);
     EXPECT_NEAR(up->z, ground_m, 1e-9);
     const auto corner = map->ray_cast({b.max_x, b.max_y, 100}, {0, 0, -1}, 1000);
@@ -337,17 +348,20 @@ TEST(HeightMap, RaysOfAnyKindAreTaken) {
     EXPECT_NEAR(far->z, map->height_m(far->x, far->y), 1e-3);
 }
 
-double ms_of(int repeats, const std::function<void()>& body) { // the best of them: other work may share the cores
+double ms_of(int repeats,
+             const std::function<void()>& body) {  // the best of them: other work may share the cores
     double best = INFINITY;
     for (int i = 0; i < repeats; ++i) {
         const auto start = std::chrono::steady_clock::now();
         body();
-        best = std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        best = std::min(
+            best,
+            std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
     }
     return best;
 }
 
-TEST(HeightMap, Timings) { // printed, not judged
+TEST(HeightMap, Timings) {  // printed, not judged
     MapFixture ground({.samples_x = 2049, .samples_y = 2049});
     const auto map = cpu_map(ground.document());
     uint64_t frame = 0;
@@ -363,9 +377,12 @@ TEST(HeightMap, Timings) { // printed, not judged
     map->update_without_gpu(++frame, 144);
     HeightPage page;
     const auto whole = [&](int level, int p) {
-        return ms_of(20, [&] { HeightMap::compose(ground.document(), map->map(), {level, p, p}, kWhole, page); });
+        return ms_of(20, [&] {
+            HeightMap::compose(ground.document(), map->map(), {level, p, p}, kWhole, page);
+        });
     };
-    std::printf("whole page: level 0 %.3f ms, level 2 %.3f ms, level 5 %.3f ms\n", whole(0, 60), whole(2, 15), whole(5, 1));
+    std::printf("whole page: level 0 %.3f ms, level 2 %.3f ms, level 5 %.3f ms\n", whole(0, 60), whole(2, 15),
+                whole(5, 1));
     SculptCommand sculpt;
     sculpt.radius_m = 10;
     const auto edit = [&](const char* name, const std::function<Dirt()>& command) {
@@ -374,10 +391,10 @@ TEST(HeightMap, Timings) { // printed, not judged
         for (int i = 0; i < 10; ++i) {
             const Dirt dirt = command();
             best_ms = std::min(best_ms, ms_of(1, [&] {
-                map->on_dirt(dirt.height);
-                request_around();
-                map->update_without_gpu(++frame, 0);
-            }));
+                                   map->on_dirt(dirt.height);
+                                   request_around();
+                                   map->update_without_gpu(++frame, 0);
+                               }));
         }
         std::printf("%s: %.3f ms, %.0f texels\n", name, best_ms,
                     double(map->map().counters().texels_composed - before) / 10);
@@ -394,9 +411,11 @@ TEST(HeightMap, Timings) { // printed, not judged
         return ground.apply(FootprintsCommand{{print}});
     });
     EXPECT_EQ(map->count_stale_pages(ground.document()), 0u);
-    std::printf("ray over the map: first %.3f ms", ms_of(1, [&] { (void)map->ray_cast({1, 1, 40}, {1, 1, -0.01}, 1e5); }));
+    std::printf("ray over the map: first %.3f ms", ms_of(1, [&] {
+                    (void)map->ray_cast({1, 1, 40}, {1, 1, -0.01}, 1e5);
+                }));
     std::printf(", again %.3f ms\n", ms_of(5, [&] { (void)map->ray_cast({1, 1, 40}, {1, 1, -0.01}, 1e5); }));
 }
 
-} // namespace
-} // namespace loam
+}  // namespace
+}  // namespace loam

@@ -10,9 +10,10 @@ using test::MapFixtureDesc;
 
 constexpr size_t kPageTexels = size_t(kIndexTexels) * kIndexTexels;
 constexpr TexelRect kWhole{0, 0, kIndexTexels, kIndexTexels};
-const MapFixtureDesc kGrounds[] = {{},
-                                   {.samples_x = 700, .samples_y = 333, .height_spacing_m = 0.3, .index_spacing_m = 0.25},
-                                   {.samples_x = 300, .samples_y = 200, .height_spacing_m = 7.7, .index_spacing_m = 4}};
+const MapFixtureDesc kGrounds[] = {
+    {},
+    {.samples_x = 700, .samples_y = 333, .height_spacing_m = 0.3, .index_spacing_m = 0.25},
+    {.samples_x = 300, .samples_y = 200, .height_spacing_m = 7.7, .index_spacing_m = 4}};
 
 std::unique_ptr<IndexMap> cpu_map(const Document& document, int slot_count = 60) {
     auto map = IndexMap::create(nullptr, document, {.slot_count = slot_count, .gpu = false});
@@ -58,7 +59,8 @@ TEST(IndexCompose, LevelsArePointSamplesOfTheFinest) {
                 const glm::ivec2 s = sample_of(page, x, y) * (1 << page.level);
                 if (s.x < 0 || s.y < 0 || s.x > last.x || s.y > last.y) continue;
                 const double spacing = map->map().spacing_m(0);
-                ASSERT_EQ(map->texel_at(s.x * spacing, s.y * spacing), composed[size_t(y * kIndexTexels + x)]);
+                ASSERT_EQ(map->texel_at(s.x * spacing, s.y * spacing),
+                          composed[size_t(y * kIndexTexels + x)]);
             }
         }
     }
@@ -70,7 +72,8 @@ TEST(IndexMap, PagesAfterAnyHistoryEqualPagesFromNothing) {
         const auto map = cpu_map(ground.document());
         uint64_t frame = 0;
         const auto refresh = [&] {
-            map->map().for_each_resident([&](const MapPage& page, int, const TexelRect&) { map->request(page, 1); });
+            map->map().for_each_resident(
+                [&](const MapPage& page, int, const TexelRect&) { map->request(page, 1); });
             map->update_without_gpu(++frame, 0);
         };
         for (int i = 0; i < 60; ++i) map->request(ground.page(map->map()), 1);
@@ -81,7 +84,7 @@ TEST(IndexMap, PagesAfterAnyHistoryEqualPagesFromNothing) {
             refresh();
             ASSERT_EQ(map->count_stale_pages(ground.document()), 0u) << "after command " << i;
         }
-        PaintCommand paint; // negative control: dirt that is lost shows
+        PaintCommand paint;  // negative control: dirt that is lost shows
         const glm::dvec2 centre = ground.document().bounds().center();
         paint.dabs = {centre};
         paint.radius_m = ground.document().bounds().width();
@@ -104,13 +107,13 @@ TEST(IndexMap, EverySquareOfTheTextureLiesInOnePage) {
                 const MapPage page = map->page_for_square(x, y, side);
                 ASSERT_TRUE(map->map().exists(page));
                 const double size = map->map().page_size_m(page.level);
-                if (page == map->map().root() && size < side) continue; // larger than the whole map
+                if (page == map->map().root() && size < side) continue;  // larger than the whole map
                 const WorldRect rect = map->map().page_rect(page);
                 ASSERT_LE(rect.min_x, x);
                 ASSERT_LE(rect.min_y, y);
                 ASSERT_GE(rect.max_x, x + side);
                 ASSERT_GE(rect.max_y, y + side);
-                ASSERT_TRUE(page.level == 0 || size == side); // no coarser than needed
+                ASSERT_TRUE(page.level == 0 || size == side);  // no coarser than needed
             }
         }
         EXPECT_TRUE(map->map().exists(map->page_for_square(-1e9, 1e9, 1)));
@@ -136,5 +139,5 @@ TEST(IndexMap, TexelUnderAPointSeesEditsAtOnce) {
         EXPECT_LT(map->texel_at(x, -x).layer, 3);
 }
 
-} // namespace
-} // namespace loam
+}  // namespace
+}  // namespace loam

@@ -38,7 +38,8 @@ class MapFixture {
         settings.height_spacing_m = desc.height_spacing_m;
         settings.refine = desc.refine;
         settings.index_spacing_m = desc.index_spacing_m;
-        settings.layers = {{"grass", "layers/grass.layer"}, {"dirt", "layers/dirt.layer"}, {"scree", "layers/scree.layer"}};
+        settings.layers = {
+            {"grass", "layers/grass.layer"}, {"dirt", "layers/dirt.layer"}, {"scree", "layers/scree.layer"}};
         auto created = Document::create(folder_, settings);
         if (!created) {
             ADD_FAILURE() << created.message();
@@ -57,7 +58,7 @@ class MapFixture {
     Document& document() { return *document_; }
     int uniform(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
     double real(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
-    glm::dvec2 place() { // on the map and a little beyond
+    glm::dvec2 place() {  // on the map and a little beyond
         const WorldRect b = document_->bounds();
         return {real(b.min_x - 3, b.max_x + 3), real(b.min_y - 3, b.max_y + 3)};
     }
@@ -89,7 +90,8 @@ class MapFixture {
     Dirt random_command() {
         const glm::dvec2 at = place();
         switch (uniform(0, 7)) {
-            case 0: return crater(at.x, at.y, real(0.5, 25));
+            case 0:
+                return crater(at.x, at.y, real(0.5, 25));
             case 1: {
                 FootprintsCommand prints;
                 for (int i = uniform(1, 4); i > 0; --i) {
@@ -125,7 +127,8 @@ class MapFixture {
                 paint.seed = uint32_t(random_());
                 return apply(paint);
             }
-            default: break;
+            default:
+                break;
         }
         SculptCommand sculpt;
         sculpt.mode = SculptMode(uniform(0, 3));
@@ -154,7 +157,8 @@ class MapFixture {
         std::vector<IndexTexel> texels(size_t(size.x));
         for (int j = 0; j < size.y; ++j) {
             for (int i = 0; i < size.x; ++i)
-                texels[size_t(i)] = {uint16_t((i / 5 + j / 7) % 3), {uint8_t(i), uint8_t(j), uint8_t(i * j)}, 0};
+                texels[size_t(i)] = {
+                    uint16_t((i / 5 + j / 7) % 3), {uint8_t(i), uint8_t(j), uint8_t(i * j)}, 0};
             const Status status = writer.write_index_rows(j, 1, texels);
             if (!status.ok()) ADD_FAILURE() << status.message();
         }
@@ -167,4 +171,4 @@ class MapFixture {
     std::unique_ptr<Document> document_;
 };
 
-} // namespace loam::test
+}  // namespace loam::test

@@ -16,12 +16,13 @@ using test::MapFixture;
 
 // Reversed Z, infinite far plane, Vulkan's clip space; yaw clockwise from north.
 glm::dmat4 clip_from_rel(double yaw, double pitch, double fov_y, double aspect) {
-    const glm::dvec3 forward(std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch), std::sin(pitch));
+    const glm::dvec3 forward(std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch),
+                             std::sin(pitch));
     const glm::dvec3 right(std::cos(yaw), -std::sin(yaw), 0);
     const glm::dvec3 down = glm::cross(forward, right);
     const double f = 1 / std::tan(fov_y / 2);
-    const glm::dmat4 rows(glm::dvec4(right * f / aspect, 0), glm::dvec4(down * f, 0), glm::dvec4(0, 0, 0, 0.1),
-                          glm::dvec4(forward, 0));
+    const glm::dmat4 rows(glm::dvec4(right * f / aspect, 0), glm::dvec4(down * f, 0),
+                          glm::dvec4(0, 0, 0, 0.1), glm::dvec4(forward, 0));
     return glm::transpose(rows);
 }
 
@@ -43,9 +44,11 @@ PatchView random_view(MapFixture& ground) {
 void random_residency(HeightMap& map, MapFixture& ground, uint64_t& frame) {
     for (int i = ground.uniform(0, 40); i > 0; --i) {
         MapPage page = ground.page(map.map());
-        for (float priority = 1; page.level <= map.map().root().level; page = {page.level + 1, page.x / 2, page.y / 2}, ++priority)
+        for (float priority = 1; page.level <= map.map().root().level;
+             page = {page.level + 1, page.x / 2, page.y / 2}, ++priority)
             for (int k = 0; k < 4; ++k)
-                if (ground.uniform(0, 5)) map.request({page.level, (page.x & ~1) + (k & 1), (page.y & ~1) + (k >> 1)}, priority);
+                if (ground.uniform(0, 5))
+                    map.request({page.level, (page.x & ~1) + (k & 1), (page.y & ~1) + (k >> 1)}, priority);
     }
     map.update_without_gpu(++frame, ground.uniform(1, 60));
 }
@@ -64,18 +67,21 @@ struct Cover {
                 }
         }
     }
-    int at(int x, int y) const { return x < 0 || y < 0 || x >= width || y >= height ? -1 : owner[size_t(y * width + x)]; }
+    int at(int x, int y) const {
+        return x < 0 || y < 0 || x >= width || y >= height ? -1 : owner[size_t(y * width + x)];
+    }
     int width, height, overlaps = 0;
     std::vector<int> owner;
 };
 
 // A vertex as the shader computes it.
 struct Vertex {
-    glm::ivec2 step; // of the whole map
+    glm::ivec2 step;  // of the whole map
     glm::vec2 rel_m;
     float height_m;
     auto key() const {
-        return std::tuple(std::bit_cast<uint32_t>(rel_m.x), std::bit_cast<uint32_t>(rel_m.y), std::bit_cast<uint32_t>(height_m));
+        return std::tuple(std::bit_cast<uint32_t>(rel_m.x), std::bit_cast<uint32_t>(rel_m.y),
+                          std::bit_cast<uint32_t>(height_m));
     }
 };
 
@@ -153,11 +159,17 @@ void check_culling(const PatchSet& set, const HeightMap& map, const PatchView& v
                 const Vertex a = vertex(set, map, p, {x, y}), b = vertex(set, map, p, {x + 1, y});
                 const Vertex c = vertex(set, map, p, {x + 1, y + 1});
                 for (int k = 0; k < 4; ++k) {
-                    const float wa = k == 0 ? 1 : 0.3f, wb = k == 1 ? 0.7f : k == 0 ? 0 : 0.35f, wc = 1 - wa - wb;
+                    const float wa = k == 0 ? 1 : 0.3f,
+                                wb = k == 1   ? 0.7f
+                                     : k == 0 ? 0
+                                              : 0.35f,
+                                wc = 1 - wa - wb;
                     const glm::vec2 rel = a.rel_m * wa + b.rel_m * wb + c.rel_m * wc;
-                    const double z = double(a.height_m * wa + b.height_m * wb + c.height_m * wc) - view.camera_m.z;
+                    const double z =
+                        double(a.height_m * wa + b.height_m * wb + c.height_m * wc) - view.camera_m.z;
                     const glm::dvec4 clip = view.clip_from_rel * glm::dvec4(rel, z, 1);
-                    const bool seen = clip.w > 0 && std::abs(clip.x) <= clip.w && std::abs(clip.y) <= clip.w && clip.z <= clip.w;
+                    const bool seen = clip.w > 0 && std::abs(clip.x) <= clip.w &&
+                                      std::abs(clip.y) <= clip.w && clip.z <= clip.w;
                     ASSERT_FALSE(seen);
                 }
             }
@@ -165,7 +177,8 @@ void check_culling(const PatchSet& set, const HeightMap& map, const PatchView& v
 
 TEST(PatchTree, AnyCacheGivesOneWatertightCover) {
     for (const int refine : {0, 2}) {
-        MapFixture ground({.samples_x = 900, .samples_y = 700, .height_spacing_m = 0.7, .refine = refine}, 21);
+        MapFixture ground({.samples_x = 900, .samples_y = 700, .height_spacing_m = 0.7, .refine = refine},
+                          21);
         for (int i = 0; i < 4; ++i) ground.random_command();
         uint64_t frame = 0;
         std::set<uint64_t> cuts;
@@ -183,7 +196,8 @@ TEST(PatchTree, AnyCacheGivesOneWatertightCover) {
             visible += set.visible_count;
             hidden += int(set.patches.size()) - set.visible_count;
             for (const auto& patch : set.patches)
-                for (int s = 0; s < 4; ++s) deepest = std::max(deepest, int(patch.lod_deltas >> (4 * s) & 15u));
+                for (int s = 0; s < 4; ++s)
+                    deepest = std::max(deepest, int(patch.lod_deltas >> (4 * s) & 15u));
         }
         EXPECT_GT(cuts.size(), 15u);
         EXPECT_GT(visible, 100);
@@ -202,7 +216,8 @@ TEST(PatchTree, NeighboursDifferByFourLevelsAtMost) {
     // The pages around a vertical line through the map's middle, west of it only.
     for (int level = root - 1; level >= 0; --level) {
         const int middle = 1 << (root - 1 - level);
-        for (int k = 0; k < 4; ++k) map->request({level, std::max(middle - 2 + (k & 1), 0), k >> 1}, float(level + 1));
+        for (int k = 0; k < 4; ++k)
+            map->request({level, std::max(middle - 2 + (k & 1), 0), k >> 1}, float(level + 1));
         if (level == root - 1)
             for (int k = 0; k < 4; ++k) map->request({level, k & 1, k >> 1}, 100);
     }
@@ -216,10 +231,11 @@ TEST(PatchTree, NeighboursDifferByFourLevelsAtMost) {
     int deepest = 0, finest = root;
     for (size_t p = 0; p < set.patches.size(); ++p) {
         finest = std::min(finest, set.pages[p].level);
-        for (int s = 0; s < 4; ++s) deepest = std::max(deepest, int(set.patches[p].lod_deltas >> (4 * s) & 15u));
+        for (int s = 0; s < 4; ++s)
+            deepest = std::max(deepest, int(set.patches[p].lod_deltas >> (4 * s) & 15u));
     }
     EXPECT_EQ(deepest, 4);
-    EXPECT_EQ(finest, root - 5); // beside a page of level root - 1
+    EXPECT_EQ(finest, root - 5);  // beside a page of level root - 1
 }
 
 PatchSet settle(HeightMap& map, const PatchView& view, uint64_t& frame, int& frames) {
@@ -239,7 +255,7 @@ TEST(PatchTree, ACameraAtRestComesToRestWithTheFinestPagesBelowIt) {
         uint64_t frame = 0;
         for (const glm::dvec2 at : {glm::dvec2(400, 300), glm::dvec2(900, 20), glm::dvec2(0, 1024)}) {
             PatchView view;
-            view.camera_m = glm::dvec3(at, map->height_m(at.x, at.y) + 0.01); // 1 cm above the ground
+            view.camera_m = glm::dvec3(at, map->height_m(at.x, at.y) + 0.01);  // 1 cm above the ground
             view.clip_from_rel = clip_from_rel(0.7, -0.2, 1, 1.6);
             int frames = 0;
             const PatchSet set = settle(*map, view, frame, frames);
@@ -249,7 +265,8 @@ TEST(PatchTree, ACameraAtRestComesToRestWithTheFinestPagesBelowIt) {
             if (slots < 60) continue;
             bool finest = false;
             for (const MapPage& page : set.pages)
-                finest = finest || (page.level == 0 && map->map().page_rect(page).contains(std::min(at.x, 1023.9), std::min(at.y, 1023.9)));
+                finest = finest || (page.level == 0 && map->map().page_rect(page).contains(
+                                                           std::min(at.x, 1023.9), std::min(at.y, 1023.9)));
             EXPECT_TRUE(finest);
         }
     }
@@ -271,14 +288,15 @@ TEST(PatchTree, LevelLimitsAreKept) {
 
 TEST(PatchTree, TheFarCornerOfTheLargestMapIsWatertight) {
     // Base samples 8 m apart, so that the map is quick to make; pages down to 0.5 m.
-    MapFixture ground({.samples_x = 2101, .samples_y = 2101, .height_spacing_m = 8, .refine = 4, .index_spacing_m = 16}, 4);
+    MapFixture ground(
+        {.samples_x = 2101, .samples_y = 2101, .height_spacing_m = 8, .refine = 4, .index_spacing_m = 16}, 4);
     const auto map = cpu_map(ground.document(), 144);
     uint64_t frame = 0;
     for (const double height_m : {0.01, 500.0, 10'000.0}) {
         const glm::dvec2 at(16'799.5, 16'799.2);
         PatchView view;
         view.camera_m = glm::dvec3(at, map->height_m(at.x, at.y) + height_m);
-        view.clip_from_rel = clip_from_rel(3.9, -0.5, 1, 1.6); // looking back over the map
+        view.clip_from_rel = clip_from_rel(3.9, -0.5, 1, 1.6);  // looking back over the map
         int frames = 0;
         const PatchSet set = settle(*map, view, frame, frames);
         check_stitching(set, *map);
@@ -310,9 +328,10 @@ TEST(PatchTree, AShadowsPatchesAreThoseItsSquareSees) {
     view.camera_m = {400, 300, 10};
     view.clip_from_rel = clip_from_rel(0.7, -0.2, 1, 1.6);
     const PatchSet set = settle(*map, view, frame, frames);
-    const double half = 40; // straight from above
-    const glm::dmat4 from_above = glm::transpose(glm::dmat4(glm::dvec4(1 / half, 0, 0, 0), glm::dvec4(0, 1 / half, 0, 0),
-                                                            glm::dvec4(0, 0, 1e-4, 0.5), glm::dvec4(0, 0, 0, 1)));
+    const double half = 40;  // straight from above
+    const glm::dmat4 from_above =
+        glm::transpose(glm::dmat4(glm::dvec4(1 / half, 0, 0, 0), glm::dvec4(0, 1 / half, 0, 0),
+                                  glm::dvec4(0, 0, 1e-4, 0.5), glm::dvec4(0, 0, 0, 1)));
     const auto seen = patches_in(set, *map, from_above);
     std::set<uint32_t> expected;
     for (uint32_t p = 0; p < set.pages.size(); ++p)
@@ -321,5 +340,5 @@ TEST(PatchTree, AShadowsPatchesAreThoseItsSquareSees) {
     EXPECT_LT(seen.size(), set.patches.size());
 }
 
-} // namespace
-} // namespace loam
+}  // namespace
+}  // namespace loam

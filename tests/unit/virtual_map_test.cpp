@@ -20,7 +20,8 @@ using Content = std::vector<int>;
 
 class Model {
   public:
-    explicit Model(uint32_t seed) : random_(seed), map_(kDesc), slots_(kDesc.slot_count), rest_until_(kDesc.slot_count) {}
+    explicit Model(uint32_t seed)
+        : random_(seed), map_(kDesc), slots_(kDesc.slot_count), rest_until_(kDesc.slot_count) {}
 
     int uniform(int low, int high) { return std::uniform_int_distribution(low, high)(random_); }
     double real(double low, double high) { return std::uniform_real_distribution(low, high)(random_); }
@@ -41,7 +42,8 @@ class Model {
     void compose(const MapPage& page, const TexelRect& rect, Content& out) const {
         out.resize(size_t(map_.page_texels() * map_.page_texels()));
         for (int y = rect.y0; y < rect.y1; ++y)
-            for (int x = rect.x0; x < rect.x1; ++x) out[size_t(y * map_.page_texels() + x)] = value(page, x, y);
+            for (int x = rect.x0; x < rect.x1; ++x)
+                out[size_t(y * map_.page_texels() + x)] = value(page, x, y);
     }
 
     // An edit whose corner may lie exactly on a sample.
@@ -60,14 +62,15 @@ class Model {
         for (int i = uniform(0, 30); i > 0; --i) map_.request(random_page(), float(real(0.01, 10)));
         const int new_pages = uniform(0, 3);
         std::vector<MapPage> before(slots_.size(), MapPage{-1});
-        map_.for_each_resident([&](const MapPage& page, int slot, const TexelRect&) { before[size_t(slot)] = page; });
+        map_.for_each_resident(
+            [&](const MapPage& page, int slot, const TexelRect&) { before[size_t(slot)] = page; });
         const auto work = map_.plan(frame_, new_pages);
         // Ejected by this plan: rests from now on.
         for (size_t slot = 0; slot < slots_.size(); ++slot)
             if (before[slot].level >= 0 && map_.slot_of(before[slot]) != int(slot))
                 rest_until_[slot] = frame_ + kSlotRestFrames;
         int whole = 0;
-        const bool fail = frame_ > 1 && uniform(0, 19) == 0; // composing fails: nothing is finished
+        const bool fail = frame_ > 1 && uniform(0, 19) == 0;  // composing fails: nothing is finished
         for (const auto& w : work) {
             if (w.whole) {
                 ++whole;
@@ -78,7 +81,7 @@ class Model {
             }
             if (fail) continue;
             compose(w.page, w.rect, slots_[size_t(w.slot)]);
-            if (uniform(0, 9) == 0) edit(true); // between composing and finishing: must stay dirty
+            if (uniform(0, 9) == 0) edit(true);  // between composing and finishing: must stay dirty
             map_.finish(w);
         }
         EXPECT_LE(whole, std::max(new_pages, 0));
@@ -127,7 +130,7 @@ TEST(VirtualMap, KeepsItsInvariantsOverRandomHistories) {
         for (int i = 0; i < 500; ++i) {
             if (model.uniform(0, 3) == 0) model.edit(true);
             model.step();
-            if (i == 0 && model.map_.slot_of(model.map_.root()) < 0) model.step(); // a first plan of 0 pages
+            if (i == 0 && model.map_.slot_of(model.map_.root()) < 0) model.step();  // a first plan of 0 pages
             model.check_tables();
             for (const auto& change : model.map_.take_table_changes()) gpu_table[change.entry] = change.slot;
             if (i > 20) {
@@ -138,8 +141,8 @@ TEST(VirtualMap, KeepsItsInvariantsOverRandomHistories) {
             }
         }
         model.map_.for_each_resident([&](const MapPage& page, int slot, const TexelRect&) {
-            const size_t entry =
-                model.map_.level_offset(page.level) + size_t(page.y * model.map_.pages_x(page.level) + page.x);
+            const size_t entry = model.map_.level_offset(page.level) +
+                                 size_t(page.y * model.map_.pages_x(page.level) + page.x);
             EXPECT_EQ(gpu_table[entry], slot);
             gpu_table[entry] = VirtualMap::kNoSlot;
         });
@@ -147,7 +150,7 @@ TEST(VirtualMap, KeepsItsInvariantsOverRandomHistories) {
     }
 }
 
-TEST(VirtualMap, StalePagesAreSeenWhenDirtIsLost) { // negative control
+TEST(VirtualMap, StalePagesAreSeenWhenDirtIsLost) {  // negative control
     Model model(5);
     for (int i = 0; i < 100; ++i) model.step();
     ASSERT_EQ(model.stale_pages(), 0);
@@ -155,7 +158,8 @@ TEST(VirtualMap, StalePagesAreSeenWhenDirtIsLost) { // negative control
     EXPECT_GT(model.stale_pages(), 0);
 }
 
-void compose_all(VirtualMap& map, uint64_t& frame, int new_pages, const std::vector<std::pair<MapPage, float>>& wanted) {
+void compose_all(VirtualMap& map, uint64_t& frame, int new_pages,
+                 const std::vector<std::pair<MapPage, float>>& wanted) {
     for (const auto& [page, priority] : wanted) map.request(page, priority);
     for (const auto& work : map.plan(++frame, new_pages)) map.finish(work);
 }
@@ -164,7 +168,8 @@ TEST(VirtualMap, SettlesOnTheMostWantedPagesAndRests) {
     VirtualMap map(kDesc);
     std::vector<std::pair<MapPage, float>> wanted;
     for (int y = 0; y < map.pages_y(0); ++y)
-        for (int x = 0; x < map.pages_x(0); ++x) wanted.push_back({{0, x, y}, float(1 + (x * 7 + y * 13) % 101)});
+        for (int x = 0; x < map.pages_x(0); ++x)
+            wanted.push_back({{0, x, y}, float(1 + (x * 7 + y * 13) % 101)});
     uint64_t frame = 0;
     int frames = 0;
     do compose_all(map, frame, 4, wanted);
@@ -174,7 +179,7 @@ TEST(VirtualMap, SettlesOnTheMostWantedPagesAndRests) {
     for (int i = 0; i < 10; ++i) EXPECT_GE(map.slot_of(wanted[size_t(i)].first), 0);
     int resident = 0;
     map.for_each_resident([&](const MapPage&, int, const TexelRect&) { ++resident; });
-    EXPECT_EQ(resident, kDesc.slot_count); // the cache is full
+    EXPECT_EQ(resident, kDesc.slot_count);  // the cache is full
     const uint64_t composed = map.counters().pages_composed;
     for (int i = 0; i < 10; ++i) compose_all(map, frame, 4, wanted);
     EXPECT_EQ(map.counters().pages_composed, composed);
@@ -194,7 +199,7 @@ TEST(VirtualMap, KeepsWhatNobodyAsksForUntilTheSlotIsNeeded) {
 
 TEST(VirtualMap, AResidentPageIsHarderToEject) {
     VirtualMapDesc desc = kDesc;
-    desc.slot_count = 2; // the root and one more
+    desc.slot_count = 2;  // the root and one more
     VirtualMap map(desc);
     uint64_t frame = 0;
     const MapPage a{0, 0, 0}, b{0, 1, 0};
@@ -219,7 +224,7 @@ TEST(VirtualMap, DirtOfUnrequestedPagesWaits) {
     map.request(page, 1.0f);
     const auto work = map.plan(++frame, 0);
     ASSERT_EQ(work.size(), 1u);
-    EXPECT_EQ(work[0].rect, (TexelRect{4, 4, 5, 5})); // sample 10 of page 1, whose sample 8 is texel 2
+    EXPECT_EQ(work[0].rect, (TexelRect{4, 4, 5, 5}));  // sample 10 of page 1, whose sample 8 is texel 2
     EXPECT_TRUE(map.has_work());
     map.finish(work[0]);
     EXPECT_TRUE(map.dirty_of(map.slot_of(page)).empty());
@@ -238,11 +243,12 @@ TEST(VirtualMap, TakesNonsense) {
     EXPECT_EQ(map.invalidate({NAN, 0, 1, 1}), 0);
     for (const auto& work : map.plan(1, 10)) map.finish(work);
     EXPECT_EQ(map.invalidate({-INFINITY, -INFINITY, INFINITY, INFINITY}), 3);
-    EXPECT_EQ(map.plan(2, -5).size(), 1u); // the root
+    EXPECT_EQ(map.plan(2, -5).size(), 1u);  // the root
 }
 
 TEST(VirtualMap, TenThousandPagesAreQuick) {
-    VirtualMapDesc desc{.slot_count = 10'000, .level_count = 9, .spacing_m = 1, .bounds = {0, 0, 16384, 16384}};
+    VirtualMapDesc desc{
+        .slot_count = 10'000, .level_count = 9, .spacing_m = 1, .bounds = {0, 0, 16384, 16384}};
     VirtualMap map(desc);
     uint64_t frame = 0;
     std::vector<std::pair<MapPage, float>> wanted;
@@ -250,10 +256,11 @@ TEST(VirtualMap, TenThousandPagesAreQuick) {
     compose_all(map, frame, 10'000, wanted);
     const auto start = std::chrono::steady_clock::now();
     for (int i = 0; i < 10; ++i) compose_all(map, frame, 2, wanted);
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / 10;
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count() / 10;
     RecordProperty("ms_a_frame", std::to_string(ms));
-    EXPECT_LT(ms, 50.0); // about 2 on an idle core
+    EXPECT_LT(ms, 50.0);  // about 2 on an idle core
 }
 
-} // namespace
-} // namespace loam
+}  // namespace
+}  // namespace loam
