@@ -2,7 +2,7 @@
 // they led to, twice; the best of the three attempts is kept.
 // Sources: the method of stb_dxt and of Simon Brown's "DXT Compression Techniques"; written anew.
 // Differences: no tables for flat blocks; a flat block picks, a channel, the best of the four thirds between two neighbouring
-// endpoint values (error at most 1.4/255 in 5-bit channels, 0 where 5:6:5 holds the colour).
+// endpoint values (error at most 1.5/255 in 5-bit channels, 0 where 5:6:5 holds the colour).
 //
 // Colours are 0…1. Channels are scaled by the square roots of the weights, so that plain distance is the weighted error.
 // Result: x: endpoints (colour 0 low half), y: indices, texel 0 in the lowest bits. Always the four-colour mode
@@ -93,14 +93,21 @@ LOAM_INLINE Bc1Try bc1_better(Bc1Try a, Bc1Try b) {
     return t;
 }
 
-// A channel of a flat block: x, y so that (2 x + y) / 3, expanded, is nearest to v; both in steps of 1 / levels.
+// A channel value of five (31 levels) or six bits as hardware expands it.
+LOAM_INLINE float bc1_expand(float q, float levels) {
+    float eight = levels < 32.0f ? q * 8.0f + floor(q * 0.25f) : q * 4.0f + floor(q * 0.0625f);
+    return eight * (1.0f / 255.0f);
+}
+
+// A channel of a flat block: x, y so that (2 x + y) / 3, expanded, is nearest to v; both as shares of `levels`.
 LOAM_INLINE vec2 bc1_flat_channel(float v, float levels) {
-    float low = floor(v * levels);
-    float third = floor((v * levels - low) * 3.0f + 0.5f); // 0…3
-    // (2x + y)/3 = low + third/3: 0: (0,0), 1: (0,1), 2: (1,0), 3: (1,1)
+    float low = min(floor(v * levels), levels - 1.0f);
+    float from = bc1_expand(low, levels);
+    float third = clamp(floor((v - from) / (bc1_expand(low + 1.0f, levels) - from) * 3.0f + 0.5f), 0.0f, 3.0f);
+    // 0: (0, 0), 1: (0, 1), 2: (1, 0), 3: (1, 1) above `low`
     float x = third >= 2.0f ? 1.0f : 0.0f;
     float y = third == 1.0f || third == 3.0f ? 1.0f : 0.0f;
-    return vec2(min(low + x, levels), min(low + y, levels)) / levels;
+    return vec2(low + x, low + y) / levels;
 }
 
 LOAM_INLINE uvec2 bc1_finish(Bc1Try t) {
