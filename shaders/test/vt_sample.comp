@@ -1,0 +1,22 @@
+#version 460
+// Tests: samples the virtual texture at given places.
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define VT_FIRST_SLOT 2
+#include "shaders/texture/vt_sample.glsl"
+layout(local_size_x = 64) in;
+struct Query { vec2 rel_m; float log2_texel; float unused; };
+layout(binding = 0, scalar) readonly buffer Queries { Query queries[]; };
+layout(binding = 1, scalar) writeonly buffer Answers { vec4 answers[]; };
+layout(push_constant, scalar) uniform Push { uint count; };
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= count) return;
+    ivec2 sector;
+    vec2 offset;
+    vt_split(queries[i].rel_m, sector, offset);
+    VtSample s = vt_sample(sector, offset, queries[i].log2_texel, queries[i].log2_texel);
+    answers[i * 2] = vec4(s.albedo, s.gloss);
+    answers[i * 2 + 1] = vec4(s.normal, s.occlusion, float(s.shown_mip) + 100.0 * float(s.id));
+}

@@ -1,0 +1,305 @@
+// The virtual texture on a device: pages composed, kept fresh by dirty rectangles, found through indirection, and equal to
+// the same formulas evaluated directly.
+#include <chrono>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+
+#include "runtime/maps/index_map.h"
+#include "runtime/store/layer_file.h"
+#include "runtime/texture/virtual_texture.h"
+#include "tests/gpu/test_device.h"
+#include "tests/unit/map_fixture.h"
+
+namespace {
+
+using namespace loam;
+using gpu::Access;
+using TextureTest = gpu::GpuTest;
+
+template <typename T>
+T need(Result<T> result) {
+    LOAM_CHECK(result.ok(), result.ok() ? "" : result.message());
+    return std::move(result.value());
+}
+void need(const Status& status) { LOAM_CHECK(status.ok(), status.ok() ? "" : status.message()); }
+
+// Rough: noise of the texel; flat: one colour.
+LayerTextures make_layer(int seed, bool flat) {
+    LayerTextures t;
+    t.size_texels = 64;
+    t.albedo_reveal.resize(1);
+    t.normal_gloss_occlusion.resize(1);
+    t.metalness.resize(1);
+    for (int i = 0; i < 64 * 64; ++i) {
+        const uint32_t h = flat ? uint32_t(seed) * 2654435761u : (uint32_t(i) + uint32_t(seed) * 7919u) * 2654435761u;
+        const auto byte = [&](int shift, int low, int high) { return uint8_t(low + int((h >> shift) % uint32_t(high - low))); };
+        t.albedo_reveal[0].insert(t.albedo_reveal[0].end(), {byte(3, 60, 160), byte(9, 60, 140), byte(14, 40, 120), byte(20, 0, 255)});
+        const uint8_t nx = flat ? 128 : byte(7, 100, 156), ny = flat ? 128 : byte(13, 100, 156);
+        t.normal_gloss_occlusion[0].insert(t.normal_gloss_occlusion[0].end(), {nx, ny, byte(17, 40, 120), byte(5, 180, 255)});
+        t.metalness[0].push_back(0);
+    }
+    build_layer_mips(t);
+    return t;
+}
+
+struct World {
+    explicit World(const VirtualTextureDesc& desc, bool flat_layers = false, const test::MapFixtureDesc& map = {}) : fixture(map) {
+        const auto layers_folder = document().folder() / "layers";
+        std::filesystem::create_directories(layers_folder);
+        int seed = 1;
+        for (const char* name : {"grass", "dirt", "scree"})
+            need(save_layer(layers_folder / (std::string(name) + ".layer"), make_layer(seed++, flat_layers)));
+        ring = need(gpu::FrameRing::create(gpu::test_device(), 2));
+        layers = need(LayerSet::create(*ring, document()));
+        index = need(IndexMap::create(&gpu::test_device(), document(), {.slot_count = 64}));
+        texture = need(VirtualTexture::create(gpu::test_device(), document(), *index, *layers, desc));
+    }
+    Document& document() { return fixture.document(); }
+    void on_dirt(const Dirt& dirt, bool tell_texture = true) {
+        index->on_dirt(dirt.index);
+        if (!tell_texture) return;
+        texture->on_index_dirt(dirt.index);
+        texture->on_dirt(dirt.texture);
+    }
+    void run_frames(int count) {
+        for (int i = 0; i < count; ++i) {
+            gpu::Frame* frame = need(ring->begin());
+            record(frame->commands);
+            need(ring->end(*frame));
+        }
+    }
+    void record(gpu::Commands& commands) {
+        view.frame = ++frame_number;
+        texture->request_inputs(view);
+        need(index->update(*ring, commands, frame_number, 8));
+        need(texture->update(*ring, commands, view));
+    }
+    // Pages around the camera: the finest of its sector, of the default image, and all above them.
+    void want_some_pages() {
+        std::vector<PageId> pages;
+        for (int i = 0; i < 4; ++i) {
+            pages.push_back({{true, 1, 1}, 6, 20 + i % 2, 31 + i / 2});
+            pages.push_back({{}, texture->layout().default_log2_width, i % 2, 1 + i / 2});
+        }
+        texture->request_pages(pages);
+    }
+    template <typename Image>
+    std::vector<uint32_t> read_u32(Image& image) {
+        std::vector<uint32_t> got;
+        gpu::Frame* frame = need(ring->begin());
+        ring->read_back(frame->commands, image, [&](std::span<const std::byte> bytes) {
+            got.resize(bytes.size() / 4);
+            std::memcpy(got.data(), bytes.data(), bytes.size());
+        });
+        need(ring->finish(*frame));
+        return got;
+    }
+
+    test::MapFixture fixture;
+    std::unique_ptr<gpu::FrameRing> ring;
+    std::unique_ptr<LayerSet> layers;
+    std::unique_ptr<IndexMap> index;
+    std::unique_ptr<VirtualTexture> texture;
+    TextureView view{.camera_m = {64 + 21.5, 64 + 32.5, 20}, .pixels_per_radian = 800};
+    uint64_t frame_number = 0;
+};
+
+VirtualTextureDesc small_desc(PageFormat format) {
+    return {.pages_per_side = 6, .indirection_size = 256, .format = format, .max_live_sectors = 4, .budget_pages = 8};
+}
+
+struct Query {
+    glm::vec2 rel_m;
+    float log2_texel, unused;
+};
+struct Answer {
+    glm::vec4 albedo_gloss, normal_occlusion;
+};
+
+std::vector<Answer> ask(World& w, const char* shader, const std::vector<Query>& queries, bool direct) {
+    gpu::Device& device = gpu::test_device();
+    std::vector<gpu::Binding> bindings = {gpu::storage_buffer(0), gpu::storage_buffer(1), gpu::storage_buffer(2), gpu::storage_buffer(3)};
+    if (direct) bindings.push_back(gpu::storage_buffer(4));
+    for (uint32_t slot = direct ? 5 : 4; slot < (direct ? 10u : 8u); ++slot) bindings.push_back(gpu::sampled_image(slot));
+    auto pipeline = need(gpu::Pipeline::create(device, gpu::ComputeDesc{.name = "ask", .shader = shader, .bindings = bindings, .push_bytes = 4, .constants = {}}));
+    auto answers = need(gpu::Buffer::create(device, {.name = "answers", .size_bytes = queries.size() * sizeof(Answer), .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
+    std::vector<Answer> got(queries.size());
+    gpu::Frame* frame = need(w.ring->begin());
+    const auto slice = w.ring->upload(queries.size() * sizeof(Query));
+    std::memcpy(slice.data, queries.data(), queries.size() * sizeof(Query));
+    gpu::Commands& c = frame->commands;
+    VirtualTexture& t = *w.texture;
+    if (direct) {
+        auto pass = c.pass("ask", {{answers, Access::compute_storage}, {t.direct_params(), Access::compute_sampled}, {t.direct_places(), Access::compute_sampled},
+                                   {w.index->page_table(), Access::compute_sampled}, {w.index->indices(), Access::compute_sampled}, {w.index->tints(), Access::compute_sampled},
+                                   {w.layers->albedo_reveal, Access::compute_sampled}, {w.layers->normal_gloss_occlusion, Access::compute_sampled}, {w.layers->metalness, Access::compute_sampled}});
+        c.bind(pipeline, {{0, *slice.buffer, slice.offset, queries.size() * sizeof(Query)}, {1, answers}, {2, t.direct_params()}, {3, t.direct_places()}, {4, w.index->page_table()},
+                          {5, w.index->indices().view(), t.nearest_sampler()}, {6, w.index->tints().view(), t.nearest_sampler()}, {7, w.layers->albedo_reveal.view(), w.layers->sampler},
+                          {8, w.layers->normal_gloss_occlusion.view(), w.layers->sampler}, {9, w.layers->metalness.view(), w.layers->sampler}});
+        c.push(pipeline, uint32_t(queries.size()));
+        c.dispatch(uint32_t(queries.size() + 63) / 64);
+    } else {
+        auto pass = c.pass("ask", {{answers, Access::compute_storage}, {t.params(), Access::compute_sampled}, {t.sector_table(), Access::compute_sampled},
+                                   {t.indirection(), Access::compute_sampled}, {t.atlas(0), Access::compute_sampled}, {t.atlas(1), Access::compute_sampled}, {t.atlas(2), Access::compute_sampled}});
+        c.bind(pipeline, {{0, *slice.buffer, slice.offset, queries.size() * sizeof(Query)}, {1, answers}, {2, t.params()}, {3, t.sector_table()}, {4, t.indirection().view(), t.nearest_sampler()},
+                          {5, t.atlas(0).view(), t.sampler()}, {6, t.atlas(1).view(), t.sampler()}, {7, t.atlas(2).view(), t.sampler()}});
+        c.push(pipeline, uint32_t(queries.size()));
+        c.dispatch(uint32_t(queries.size() + 63) / 64);
+    }
+    w.ring->read_back(c, answers, 0, queries.size() * sizeof(Answer), [&](std::span<const std::byte> bytes) { std::memcpy(got.data(), bytes.data(), bytes.size()); });
+    need(w.ring->finish(*frame));
+    return got;
+}
+
+TEST_F(TextureTest, PagesAreComposedAndTheIndirectionFollowsTheTrees) {
+    World w(small_desc(PageFormat::bc1x3));
+    w.want_some_pages();
+    w.run_frames(12);
+    const auto s = w.texture->statistics();
+    EXPECT_GE(s.resident_pages, 20u);
+    EXPECT_EQ(s.missing_pages, 0u);
+    EXPECT_EQ(s.live_sectors, 1u);
+    const auto expected = w.texture->expected_indirection(), got = w.read_u32(w.texture->indirection());
+    ASSERT_EQ(got.size(), expected.size());
+    int wrong = 0, used = 0;
+    for (size_t i = 0; i < got.size(); ++i)
+        if (expected[i] != kUnusedIndirection) ++used, wrong += got[i] != expected[i];
+    EXPECT_EQ(wrong, 0);
+    EXPECT_GE(used, 64 * 64);
+    EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
+}
+
+void random_edits(PageFormat format, int rounds) {
+    World w(small_desc(format));
+    w.want_some_pages();
+    w.run_frames(10);
+    for (int round = 0; round < rounds; ++round) {
+        for (int i = 0; i < 3; ++i) w.on_dirt(w.fixture.random_command());
+        // Near the pages that are resident finely.
+        FootprintsCommand prints;
+        for (int i = 0; i < 2; ++i) {
+            Footprint print;
+            print.x_m = 64 + 20 + w.fixture.real(0, 2);
+            print.y_m = 64 + 31 + w.fixture.real(0, 2);
+            print.heading_rad = w.fixture.real(0, 6);
+            prints.prints.push_back(print);
+        }
+        w.on_dirt(w.fixture.apply(prints));
+        if (round % 3 == 1) w.on_dirt(w.fixture.crater(64 + 21 + w.fixture.real(-1, 1), 64 + 32, w.fixture.real(0.3, 3)));
+        w.run_frames(1 + round % 3);
+    }
+    for (int i = 0; i < 200 && w.texture->statistics().dirty_pages > 0; ++i) w.run_frames(1);
+    w.run_frames(2);
+    ASSERT_EQ(w.texture->statistics().dirty_pages, 0u);
+    EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
+    const auto s = w.texture->statistics();
+    EXPECT_GT(s.rects_composed, s.pages_composed) << "rectangles, not pages, were composed again";
+}
+
+TEST_F(TextureTest, RandomEditsLeaveNoStaleTexelBc1) { random_edits(PageFormat::bc1x3, 8); }
+TEST_F(TextureTest, RandomEditsLeaveNoStaleTexelRgba8) { random_edits(PageFormat::rgba8, 6); }
+
+TEST_F(TextureTest, DirtThatIsNotToldIsFound) {
+    World w(small_desc(PageFormat::bc1x3));
+    w.want_some_pages();
+    w.run_frames(10);
+    w.on_dirt(w.fixture.crater(64 + 21, 64 + 32, 2), false);
+    w.run_frames(3);
+    EXPECT_GT(need(w.texture->count_stale_pages(*w.ring)), 0u);
+}
+
+std::vector<Query> places_near_camera(World& w, float log2_texel) {
+    std::vector<Query> queries;
+    for (int i = 0; i < 2000; ++i)
+        queries.push_back({{float(w.fixture.real(-1.4, 0.4)), float(w.fixture.real(-1.4, 0.4))}, log2_texel, 0});
+    return queries;
+}
+
+// The same place through the page cache and evaluated directly. rgba8: what is left is the cache's own sampling and rounding.
+TEST_F(TextureTest, TheCacheShowsWhatDirectEvaluationGives) {
+    World w(small_desc(PageFormat::rgba8), true);
+    w.want_some_pages();
+    w.run_frames(14);
+    const float finest = std::log2(1.0f / float(kPagePayload));
+    const auto queries = places_near_camera(w, finest);
+    // The direct path reads index pages: keep the finest one here resident.
+    const auto cached = ask(w, "test/vt_sample.comp", queries, false);
+    const auto direct = ask(w, "test/direct.comp", queries, true);
+    double worst_albedo = 0, worst_rest = 0, mean = 0;
+    for (size_t i = 0; i < queries.size(); ++i) {
+        EXPECT_GE(cached[i].normal_occlusion.w, 100.0f) << "from the live sector";
+        const glm::vec4 d = glm::abs(cached[i].albedo_gloss - direct[i].albedo_gloss);
+        const glm::vec4 e = glm::abs(cached[i].normal_occlusion - direct[i].normal_occlusion);
+        worst_albedo = std::max({worst_albedo, double(d.x), double(d.y), double(d.z)});
+        worst_rest = std::max({worst_rest, double(d.w), double(e.x), double(e.y), double(e.z)});
+        mean += d.x + d.y + d.z;
+    }
+    mean /= double(queries.size()) * 3;
+    std::printf("cache against direct: albedo worst %.4f mean %.5f, rest worst %.4f\n", worst_albedo, mean, worst_rest);
+    EXPECT_LT(mean, 0.003);
+    EXPECT_LT(worst_albedo, 0.03);
+    EXPECT_LT(worst_rest, 0.04);
+}
+
+TEST_F(TextureTest, AFlatColourIsSampledWithinBc1Error) {
+    World w(small_desc(PageFormat::bc1x3), true);
+    // One layer everywhere: grass.
+    PaintCommand paint;
+    paint.dabs = {{150, 130}};
+    paint.radius_m = 1000;
+    paint.hardness = 1;
+    paint.layer = "grass";
+    paint.tint = glm::dvec3(1);
+    w.on_dirt(w.fixture.apply(paint));
+    w.want_some_pages();
+    w.run_frames(14);
+    const LayerTextures grass = make_layer(1, true);
+    const auto answers = ask(w, "test/vt_sample.comp", places_near_camera(w, std::log2(1.0f / 248)), false);
+    for (int c = 0; c < 3; ++c) {
+        const double s = grass.albedo_reveal[0][size_t(c)] / 255.0;
+        const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
+        for (const Answer& a : answers) ASSERT_NEAR(std::sqrt(a.albedo_gloss[c]), std::sqrt(linear), 3.0 / 255);
+    }
+    for (const Answer& a : answers) ASSERT_NEAR(a.normal_occlusion.x, 0, 0.005);
+}
+
+TEST_F(TextureTest, Timing) {
+    World w({.pages_per_side = 13, .indirection_size = 512, .format = PageFormat::bc1x3, .budget_pages = 4});
+    w.want_some_pages();
+    w.run_frames(12);
+    const auto timed = [&](auto&& body, int repeats) {
+        double best = 1e9;
+        for (int i = 0; i < repeats; ++i) {
+            const auto start = std::chrono::steady_clock::now();
+            body();
+            best = std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+        }
+        return best;
+    };
+    const auto one_frame = [&] {
+        gpu::Frame* frame = need(w.ring->begin());
+        w.record(frame->commands);
+        need(w.ring->finish(*frame));
+    };
+    const double idle = timed(one_frame, 10);
+    const double print = timed([&] {
+        FootprintsCommand prints;
+        Footprint p;
+        p.x_m = 64 + 20.5;
+        p.y_m = 64 + 31.5;
+        p.seed = 3;
+        prints.prints.push_back(p);
+        w.on_dirt(w.fixture.apply(prints));
+        one_frame();
+    }, 8);
+    const WorldRect page_square{64 + 20, 64 + 31, 64 + 21, 64 + 32};
+    const double page = timed([&] {
+        const WorldRect rects[] = {page_square};
+        w.texture->on_dirt(rects);
+        one_frame();
+    }, 8);
+    std::printf("idle frame %.2f ms, a footprint %.2f ms, a 1 m page with its ancestors %.2f ms\n", idle, print, page);
+}
+
+} // namespace
