@@ -1,0 +1,169 @@
+#include "editor/window/app.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
+namespace loam::window {
+
+namespace {
+
+constexpr int kHistoryLength = 400; // commands looked at
+constexpr int kMostSteps = 60;      // shown
+
+struct Titles {
+    std::string operator()(const SculptCommand& c) const {
+        constexpr std::string_view names[] = {"Raise", "Lower", "Smooth", "Flatten"};
+        return std::string(names[size_t(c.mode)]);
+    }
+    std::string operator()(const PaintCommand& c) const {
+        return c.layer ? fmt::format("Paint {}", *c.layer) : std::string("Tint");
+    }
+    std::string operator()(const CraterCommand& c) const { return fmt::format("Crater {:.1f} m", c.crater.radius_m); }
+    std::string operator()(const FootprintsCommand&) const { return "Footprints"; }
+    std::string operator()(const SetOperatorCommand& c) const { return c.enabled ? "Show event" : "Hide event"; }
+    std::string operator()(const RemoveOperatorCommand&) const { return "Remove event"; }
+    std::string operator()(const UndoCommand&) const { return "Undo"; }
+    std::string operator()(const RedoCommand&) const { return "Redo"; }
+};
+
+} // namespace
+
+std::string command_title(std::string_view json) {
+    const auto command = parse_command(json);
+    return command ? std::visit(Titles{}, command->body) : std::string("Command");
+}
+
+App::App(Session& opened, const ui::Theme&)
+    : session(opened),
+      tools({.next_group = [this] { return session.document().next_group(); },
+             .layer_at = [this](double x, double y) { return layer_name_at(x, y); }}),
+      camera(opened.default_camera(), [this](double x, double y) { return height_at(x, y); }) {
+    for (const LayerEntry& layer : session.document().settings().layers) layer_names.push_back(layer.name);
+    if (!layer_names.empty()) tools.settings.layer = layer_names.front();
+    // Sizes that suit the map: a brush that is seen from where the camera starts.
+    const WorldRect bounds = session.document().bounds();
+    const double side = std::max(bounds.width(), bounds.height());
+    for (Brush& brush : tools.settings.brushes) brush.radius_m = std::clamp(side / 40, 2.0, 60.0);
+    tools.settings.brushes[size_t(Tool::crater)].radius_m = std::clamp(side / 60, 2.0, 30.0);
+    bind_shortcuts();
+    say("Ready");
+}
+
+double App::height_at(double x_m, double y_m) {
+    const auto height = session.height_m(x_m, y_m);
+    return height ? *height : 0.0;
+}
+
+std::string App::layer_name_at(double x_m, double y_m) {
+    if (!session.document().bounds().contains(x_m, y_m)) return {};
+    const auto texel = session.layer_at(x_m, y_m);
+    if (!texel || texel->layer >= layer_names.size()) return {};
+    return layer_names[texel->layer];
+}
+
+void App::fail(std::string message) {
+    if (!message.empty()) message[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(message[0])));
+    message_ = message;
+    errors_.push_back(std::move(message));
+}
+
+// --- edits ---
+
+bool App::apply(const Command& command) {
+    const auto dirt = session.apply(command);
+    if (!dirt) {
+        fail(dirt.message());
+        tools.cancel();
+        return false;
+    }
+    scene_changed_ = true;
+    if (on_command) on_command(command);
+    return true;
+}
+
+void App::undo_step() {
+    if (tools.stroking()) return;
+    if (!session.document().can_undo()) return say("Nothing to undo");
+    if (apply({.body = UndoCommand{}})) say("Undone");
+}
+
+void App::redo_step() {
+    if (tools.stroking()) return;
+    if (!session.document().can_redo()) return say("Nothing to redo");
+    if (apply({.body = RedoCommand{}})) say("Redone");
+}
+
+void App::go_to(uint64_t sequence) {
+    // Bounded: every step moves at least one entry of the list.
+    for (int i = 0; i < kHistoryLength; ++i) {
+        uint64_t newest = 0;
+        for (const HistoryStep& step : history())
+            if (step.applied) newest = std::max(newest, step.last_sequence);
+        if (newest == sequence) return;
+        const bool back = newest > sequence;
+        if (back ? !session.document().can_undo() : !session.document().can_redo()) return;
+        if (!apply(back ? Command{.body = UndoCommand{}} : Command{.body = RedoCommand{}})) return;
+    }
+}
+
+const std::vector<HistoryStep>& App::history() {
+    if (history_revision_ == session.document().revision()) return history_;
+    history_revision_ = session.document().revision();
+    history_.clear();
+    auto entries = session.document().history(kHistoryLength);
+    if (!entries) return history_;
+    std::sort(entries->begin(), entries->end(), [](const auto& a, const auto& b) { return a.sequence < b.sequence; });
+    uint64_t group = 0;
+    for (const Document::HistoryEntry& entry : *entries) {
+        if (history_.empty() || entry.group == 0 || entry.group != group)
+            history_.push_back({.title = command_title(entry.json)});
+        group = entry.group;
+        HistoryStep& step = history_.back();
+        step.last_sequence = entry.sequence;
+        step.applied = entry.applied;
+        ++step.command_count;
+    }
+    if (history_.size() > kMostSteps) history_.erase(history_.begin(), history_.end() - kMostSteps);
+    return history_;
+}
+
+void App::change_settings(const ProjectSettings& settings) {
+    if (const Status status = session.document().change_settings(settings); !status) return fail(status.message());
+    settings_changed_ = scene_changed_ = true;
+}
+
+void App::set_tool(Tool tool) {
+    if (tools.stroking()) return;
+    tools.tool = tool;
+    say(fmt::format("{} tool", tool_title(tool)));
+}
+
+int App::layer() const {
+    const auto at = std::find(layer_names.begin(), layer_names.end(), tools.settings.layer);
+    return at == layer_names.end() ? -1 : static_cast<int>(at - layer_names.begin());
+}
+
+void App::set_layer(int index) {
+    if (index >= 0 && size_t(index) < layer_names.size()) tools.settings.layer = layer_names[size_t(index)];
+}
+
+void App::resize_brush(double factor) {
+    if (tools.tool == Tool::footprints) {
+        tools.settings.gait.length_m = std::clamp(tools.settings.gait.length_m * factor, 0.05, 5.0);
+        return;
+    }
+    Brush& brush = tools.brush();
+    brush.radius_m = std::clamp(brush.radius_m * factor, ToolController::kSmallestRadius_m,
+                                ToolController::kLargestRadius_m);
+    say(fmt::format("Radius {:.2f} m", brush.radius_m));
+}
+
+void App::strengthen_brush(double factor) {
+    Brush& brush = tools.brush();
+    brush.strength = std::clamp(brush.strength * factor, 0.01, 1.0);
+    say(fmt::format("Strength {:.0f} %", brush.strength * 100));
+}
+
+} // namespace loam::window

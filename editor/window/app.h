@@ -1,0 +1,142 @@
+// The editor without its window: tools, camera, actions, what the panels show. It works through a Session, which needs
+// no device until something is drawn, so all of this runs in tests without a display.
+//
+// Longer than 200 lines of comments and members would suggest, because every panel reads it; the panels are free functions
+// (panels.h) and change it through the calls below.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "editor/session.h"
+#include "editor/window/camera_controller.h"
+#include "editor/window/tools.h"
+#include "ui/shortcuts.h"
+#include "ui/widgets.h"
+
+namespace loam::window {
+
+struct ViewSettings {
+    Shading shading = Shading::virtual_texture;
+    DebugView debug = DebugView::none;
+    bool adaptive = true;      // render scale follows the frame-time goal while things move
+    double fixed_scale = 1.0;  // when not adaptive
+    bool show_ring = true;
+};
+
+// What the window knows of the frames, for the status line.
+struct FrameInfo {
+    double frame_ms = 0;      // of the last moving frame
+    float render_scale = 1;
+    uint32_t pages_pending = 0;
+    uint64_t redraws = 0, scene_frames = 0;
+    bool resting = false;
+    std::string device;
+};
+
+struct HistoryStep { // commands of one group
+    std::string title;
+    uint64_t last_sequence = 0;
+    int command_count = 0;
+    bool applied = true;
+};
+
+// Asked for by actions, done by the window's loop between two frames.
+struct Wish {
+    enum class Kind { none, open_project, export_picture };
+    Kind kind = Kind::none;
+    std::filesystem::path path;
+    int width = 0, height = 0;
+};
+
+class App {
+  public:
+    App(Session& session, const ui::Theme& theme);
+
+    // --- parts; panels read and change these ---
+    Session& session;
+    ui::Shortcuts shortcuts;
+    ToolController tools;
+    CameraController camera;
+    ViewSettings view;
+    FrameInfo frame;
+    Wish wish;
+    std::vector<std::string> layer_names;
+    std::vector<ui::TextureId> layer_pictures; // 0 or missing: none
+    std::vector<std::string> shader_errors;
+    std::string path_text;                     // of the dialogs
+    int export_width = 1920, export_height = 1080;
+    bool quit = false;
+
+    // --- edits ---
+    // Applies, remembers what changed, reports; false after an error, which is shown.
+    bool apply(const Command& command);
+    void undo_step();
+    void redo_step();
+    // Undoes or redoes until `sequence` is the newest applied command (0: none).
+    void go_to(uint64_t sequence);
+    void change_settings(const ProjectSettings& settings);
+    void set_tool(Tool tool);
+    void set_layer(int index);
+    [[nodiscard]] int layer() const; // of the paint tool, -1: none
+    void resize_brush(double factor);
+    void strengthen_brush(double factor);
+    [[nodiscard]] const std::vector<HistoryStep>& history(); // oldest first
+    [[nodiscard]] std::string layer_name_at(double x_m, double y_m);
+    [[nodiscard]] double height_at(double x_m, double y_m);
+
+    // --- actions: menu entries, shortcuts and buttons ---
+    void run(std::string_view action, ui::Ui& ui);
+    // Keys that the interface did not use. While flying the letter keys steer.
+    void handle_keys(const std::vector<ui::Event>& keys, ui::Ui& ui);
+
+    // --- the viewport ---
+    // Feeds mouse and keyboard to camera and tools; commands are applied before it returns.
+    void viewport_input(ui::Ui& ui, const ui::ViewportResponse& response, double dt_s);
+    [[nodiscard]] const std::optional<glm::dvec3>& cursor_ground() const { return cursor_; }
+    [[nodiscard]] std::optional<ToolController::Ring> ring() const { return ring_; }
+    [[nodiscard]] bool flying() const { return drag_ == CameraInput::Drag::look; }
+    // A frame must follow at once: something moves by itself or is being held down.
+    [[nodiscard]] bool busy() const { return tools.stroking() || camera.moving() || drag_ != CameraInput::Drag::none; }
+
+    // --- messages ---
+    void say(std::string message) { message_ = std::move(message); }
+    void fail(std::string message);
+    [[nodiscard]] const std::string& message() const { return message_; }
+    [[nodiscard]] std::vector<std::string> take_errors() { return std::exchange(errors_, {}); }
+
+    // True once after the scene changed in a way that a new picture shows.
+    [[nodiscard]] bool take_scene_changed() { return std::exchange(scene_changed_, false); }
+    void scene_changed() { scene_changed_ = true; }
+    [[nodiscard]] bool take_settings_changed() { return std::exchange(settings_changed_, false); }
+    std::function<void(const Command&)> on_command; // after it was committed
+
+  private:
+    void bind_shortcuts();
+    void find_cursor_ground(const ui::ViewportResponse& response);
+    CameraInput camera_input(ui::Ui& ui, const ui::ViewportResponse& response, double dt_s);
+    void choose_drag(ui::Ui& ui, const ui::ViewportResponse& response);
+
+    std::string message_;
+    std::vector<std::string> errors_;
+    std::vector<HistoryStep> history_;
+    uint64_t history_revision_ = ~uint64_t{0};
+    bool scene_changed_ = true, settings_changed_ = false;
+
+    CameraInput::Drag drag_ = CameraInput::Drag::none;
+    bool tool_drag_ = false;
+    ui::Vec2 mouse_{-1, -1}, press_mouse_{0, 0};
+    std::optional<glm::dvec3> cursor_;
+    std::optional<ToolController::Ring> ring_;
+    uint64_t cursor_revision_ = ~uint64_t{0};
+    glm::dvec3 cursor_camera_{0};
+    double cursor_yaw_ = 0, cursor_pitch_ = 0;
+};
+
+// "Raise · 24", from a command's JSON line.
+[[nodiscard]] std::string command_title(std::string_view json);
+
+} // namespace loam::window

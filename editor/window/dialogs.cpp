@@ -1,0 +1,81 @@
+#include "editor/window/panels.h"
+
+namespace loam::window {
+
+namespace {
+
+constexpr std::string_view kHelp[][2] = {
+    {"Left button", "the tool in use"},
+    {"Right button, W A S D, Q E", "fly; the wheel sets the speed, Shift is faster"},
+    {"Alt and left button", "orbit around the ground under the cursor"},
+    {"Middle button, Alt and Shift and left", "pan"},
+    {"Wheel", "zoom towards the cursor"},
+    {"Ctrl and wheel, [ and ]", "size of the brush"},
+    {"Shift and [ and ]", "strength"},
+    {"1 … 7", "tools; also R, L, B"},
+    {"Ctrl while pressing", "raise: lower; flatten: pick a height; paint: pick a layer"},
+    {"Shift while pressing", "smooth"},
+    {", and .", "previous and next layer"},
+    {"F, Home", "frame the spot under the cursor, the whole map"},
+    {"Ctrl+Z, Ctrl+Y", "undo, redo"},
+    {"G, F3", "stay above the ground, direct shading"},
+};
+
+void help_dialog(ui::Ui& ui) {
+    auto dialog = ui::dialog(ui, "Keyboard and mouse", 520);
+    if (!dialog) return;
+    for (const auto& [keys, what] : kHelp) {
+        auto row = ui.row({ui::flex(0.45f), ui::flex(0.55f)}, 20);
+        ui::label(ui, keys);
+        ui::label(ui, what, ui::Tone::dim);
+    }
+    ui.space(8);
+    (void)ui::dialog_buttons(ui, {"Close"});
+}
+
+void open_dialog(App& app, ui::Ui& ui) {
+    auto dialog = ui::dialog(ui, "Open project", 480);
+    if (!dialog) return;
+    ui::text_field(ui, "Folder", app.path_text, {.placeholder = "a folder with project.toml"});
+    ui.space(8);
+    if (ui::dialog_buttons(ui, {"Cancel", "Open"}) != 1) return;
+    // Looked at before the open project is let go.
+    if (const auto settings = load_project(app.path_text); !settings) return app.fail(settings.message());
+    app.wish = {.kind = Wish::Kind::open_project, .path = app.path_text};
+}
+
+void record_dialog(App& app, ui::Ui& ui) {
+    auto dialog = ui::dialog(ui, "Record script", 480);
+    if (!dialog) return;
+    ui::paragraph(ui, "Every command from now on is added to this file, one line each; loam replay runs it.",
+                  ui::Tone::dim);
+    ui::text_field(ui, "File", app.path_text);
+    ui.space(8);
+    if (ui::dialog_buttons(ui, {"Cancel", "Record"}) != 1) return;
+    if (const Status status = app.session.record_to(app.path_text); !status) return app.fail(status.message());
+    app.say(fmt::format("Recording to {}", app.path_text));
+}
+
+void export_dialog(App& app, ui::Ui& ui) {
+    auto dialog = ui::dialog(ui, "Export picture", 480);
+    if (!dialog) return;
+    ui::text_field(ui, "File", app.path_text);
+    ui::slider(ui, "Width", app.export_width, {.min = 64, .max = 7680, .unit = "px"});
+    ui::slider(ui, "Height", app.export_height, {.min = 64, .max = 4320, .unit = "px"});
+    ui.space(8);
+    if (ui::dialog_buttons(ui, {"Cancel", "Export"}) != 1) return;
+    app.wish = {.kind = Wish::Kind::export_picture, .path = app.path_text, .width = app.export_width,
+                .height = app.export_height};
+}
+
+} // namespace
+
+void build_dialogs(App& app, ui::Ui& ui) {
+    help_dialog(ui);
+    open_dialog(app, ui);
+    record_dialog(app, ui);
+    export_dialog(app, ui);
+    for (const std::string& text : app.take_errors()) ui.toast(text, ui.theme.error, 8);
+}
+
+} // namespace loam::window

@@ -1,0 +1,92 @@
+#include <array>
+
+#include "editor/window/panels.h"
+
+namespace loam::window {
+
+namespace {
+
+constexpr std::array kDebugViews = {DebugView::none,      DebugView::mips,    DebugView::sectors, DebugView::normals,
+                                    DebugView::occlusion, DebugView::indirection, DebugView::shadow, DebugView::albedo};
+
+void action_item(App& app, ui::Ui& ui, std::string_view label, std::string_view action, ui::Icon icon = ui::Icon::none,
+                 bool enabled = true, bool checked = false) {
+    const std::string shortcut = app.shortcuts.label(action);
+    if (ui::menu_item(ui, {.label = label, .shortcut = shortcut, .icon = icon, .enabled = enabled, .checked = checked}))
+        app.run(action, ui);
+}
+
+void file_menu(App& app, ui::Ui& ui) {
+    action_item(app, ui, "Open…", "open", ui::Icon::open);
+    action_item(app, ui, "Save", "save", ui::Icon::save);
+    ui::menu_separator(ui);
+    action_item(app, ui, "Record script…", "record", ui::Icon::play);
+    action_item(app, ui, "Export picture…", "export", ui::Icon::camera);
+    ui::menu_separator(ui);
+    action_item(app, ui, "Quit", "quit");
+}
+
+void edit_menu(App& app, ui::Ui& ui) {
+    action_item(app, ui, "Undo", "undo", ui::Icon::undo, app.session.document().can_undo());
+    action_item(app, ui, "Redo", "redo", ui::Icon::redo, app.session.document().can_redo());
+}
+
+void view_menu(App& app, ui::Ui& ui) {
+    action_item(app, ui, "Whole map", "home");
+    action_item(app, ui, "Frame the spot under the cursor", "frame");
+    action_item(app, ui, "Stay above the ground", "above ground", ui::Icon::none, true, app.camera.keep_above_ground);
+    ui::menu_separator(ui);
+    action_item(app, ui, "Direct shading", "direct shading", ui::Icon::none, true,
+                app.view.shading == Shading::direct);
+    if (ui::menu_item(ui, {.label = "Adapt the resolution while moving", .checked = app.view.adaptive})) {
+        app.view.adaptive = !app.view.adaptive;
+        app.scene_changed();
+    }
+    if (ui::menu_item(ui, {.label = "Brush outline", .checked = app.view.show_ring}))
+        app.view.show_ring = !app.view.show_ring;
+    ui::menu_separator(ui);
+    for (const DebugView debug : kDebugViews) {
+        if (!ui::menu_item(ui, {.label = debug_view_title(debug), .checked = app.view.debug == debug})) continue;
+        app.view.debug = debug;
+        app.scene_changed();
+    }
+}
+
+void tools_menu(App& app, ui::Ui& ui) {
+    for (int i = 0; i < kToolCount; ++i)
+        action_item(app, ui, tool_title(Tool(i)), tool_name(Tool(i)), tool_icon(Tool(i)), true,
+                    app.tools.tool == Tool(i));
+    ui::menu_separator(ui);
+    action_item(app, ui, "Smaller brush", "smaller");
+    action_item(app, ui, "Larger brush", "larger");
+    action_item(app, ui, "Weaker brush", "weaker");
+    action_item(app, ui, "Stronger brush", "stronger");
+}
+
+} // namespace
+
+std::string_view debug_view_title(DebugView view) {
+    switch (view) {
+        case DebugView::none: return "Final picture";
+        case DebugView::mips: return "Page mips";
+        case DebugView::sectors: return "Sectors";
+        case DebugView::normals: return "Normals";
+        case DebugView::occlusion: return "Ambient occlusion";
+        case DebugView::indirection: return "Indirection";
+        case DebugView::shadow: return "Shadow";
+        case DebugView::albedo: return "Albedo";
+    }
+    return "Final picture";
+}
+
+void build_menus(App& app, ui::Ui& ui) {
+    auto top = ui::panel(ui, "menus", {.edge = ui::Edge::top, .size = 32, .horizontal = true, .padding = 4});
+    auto bar = ui::menu_bar(ui);
+    if (auto menu = ui::menu(ui, "File")) file_menu(app, ui);
+    if (auto menu = ui::menu(ui, "Edit")) edit_menu(app, ui);
+    if (auto menu = ui::menu(ui, "View")) view_menu(app, ui);
+    if (auto menu = ui::menu(ui, "Tools")) tools_menu(app, ui);
+    if (auto menu = ui::menu(ui, "Help")) action_item(app, ui, "Keyboard and mouse", "shortcuts", ui::Icon::info);
+}
+
+} // namespace loam::window

@@ -1,0 +1,20 @@
+// The panels around the viewport. Each is built anew in every frame from the App, and changes it through its calls.
+#pragma once
+
+#include "editor/window/app.h"
+
+namespace loam::window {
+
+void build_menus(App& app, ui::Ui& ui);
+void build_tool_bar(App& app, ui::Ui& ui);
+void build_properties(App& app, ui::Ui& ui); // the right panel: tool, layers, sun, history
+void build_status_line(App& app, ui::Ui& ui);
+void build_shader_errors(App& app, ui::Ui& ui); // only while there are some
+void build_dialogs(App& app, ui::Ui& ui);
+// The brush's outline on the ground, over the picture: sharp at any render scale, and moving it needs no new picture.
+void draw_ring(App& app, ui::Ui& ui, const ui::Rect& viewport);
+
+[[nodiscard]] ui::Icon tool_icon(Tool tool);
+[[nodiscard]] std::string_view debug_view_title(DebugView view);
+
+} // namespace loam::window

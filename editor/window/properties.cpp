@@ -1,0 +1,156 @@
+// The right panel: properties of the tool, layers, sun, history.
+#include <cmath>
+
+#include "editor/window/panels.h"
+
+namespace loam::window {
+
+namespace {
+
+constexpr double kDegrees = 180 / M_PI;
+
+void brush_properties(ui::Ui& ui, Brush& brush, bool with_strength) {
+    ui::slider(ui, "Radius", brush.radius_m,
+               {.min = ToolController::kSmallestRadius_m, .max = ToolController::kLargestRadius_m, .decimals = 2,
+                .unit = "m", .logarithmic = true, .tooltip = "[ and ], or Ctrl and the wheel"});
+    if (!with_strength) return;
+    double percent = brush.strength * 100;
+    if (ui::slider(ui, "Strength", percent, {.min = 1, .max = 100, .decimals = 0, .unit = "%"}))
+        brush.strength = percent / 100;
+    percent = brush.hardness * 100;
+    if (ui::slider(ui, "Hardness", percent, {.min = 0, .max = 100, .decimals = 0, .unit = "%"}))
+        brush.hardness = percent / 100;
+}
+
+void slope_limits(ui::Ui& ui, ToolSettings& settings) {
+    double low = settings.min_slope_rad * kDegrees, high = settings.max_slope_rad * kDegrees;
+    const ui::SliderDesc desc{.min = 0, .max = 90, .decimals = 0, .unit = "°"};
+    if (ui::slider(ui, "Slope from", low, desc)) settings.min_slope_rad = std::min(low, high) / kDegrees;
+    if (ui::slider(ui, "Slope to", high, desc)) settings.max_slope_rad = std::max(low, high) / kDegrees;
+}
+
+void tint_properties(ui::Ui& ui, ToolSettings& settings) {
+    ui::checkbox(ui, "Tint", settings.use_tint);
+    if (!settings.use_tint) return;
+    const ui::SliderDesc desc{.min = 0, .max = 1, .decimals = 2};
+    ui::slider(ui, "Red", settings.tint.x, desc);
+    ui::slider(ui, "Green", settings.tint.y, desc);
+    ui::slider(ui, "Blue", settings.tint.z, desc);
+}
+
+void crater_properties(ui::Ui& ui, App& app) {
+    ToolSettings& settings = app.tools.settings;
+    brush_properties(ui, app.tools.brush(), false);
+    double percent = settings.crater_depth_share * 100;
+    if (ui::slider(ui, "Depth", percent,
+                   {.min = 5, .max = 100, .decimals = 0, .unit = "%", .tooltip = "Of the radius"}))
+        settings.crater_depth_share = percent / 100;
+    int seed = static_cast<int>(settings.seed);
+    if (ui::slider(ui, "Seed", seed, {.min = 1, .max = 9999, .tooltip = "Each crater has its own shape"}))
+        settings.seed = static_cast<uint32_t>(seed);
+}
+
+void gait_properties(ui::Ui& ui, GaitDesc& gait) {
+    ui::slider(ui, "Foot", gait.length_m, {.min = 0.05, .max = 5, .decimals = 2, .unit = "m", .logarithmic = true});
+    ui::slider(ui, "Depth", gait.depth_m, {.min = 0.002, .max = 0.5, .decimals = 3, .unit = "m", .logarithmic = true});
+    ui::slider(ui, "Step", gait.step_share,
+               {.min = 1.2, .max = 6, .decimals = 1, .unit = "feet", .tooltip = "From one foot to the next"});
+}
+
+void tool_properties(App& app, ui::Ui& ui) {
+    ToolSettings& settings = app.tools.settings;
+    ui.push_id(tool_name(app.tools.tool));
+    switch (app.tools.tool) {
+        case Tool::raise:
+        case Tool::lower:
+        case Tool::smooth:
+            brush_properties(ui, app.tools.brush(), true);
+            break;
+        case Tool::flatten:
+            brush_properties(ui, app.tools.brush(), true);
+            ui::checkbox(ui, "Fixed height", settings.flatten_fixed);
+            ui.push_disabled(!settings.flatten_fixed);
+            ui::slider(ui, "Height", settings.flatten_target_m,
+                       {.min = -1000, .max = 9000, .decimals = 2, .unit = "m"});
+            ui.pop_disabled();
+            break;
+        case Tool::paint:
+            brush_properties(ui, app.tools.brush(), true);
+            slope_limits(ui, settings);
+            tint_properties(ui, settings);
+            break;
+        case Tool::crater: crater_properties(ui, app); break;
+        case Tool::footprints: gait_properties(ui, settings.gait); break;
+    }
+    ui.pop_id();
+}
+
+void layer_palette(App& app, ui::Ui& ui) {
+    if (app.layer_names.empty()) return ui::label(ui, "The project has no layers", ui::Tone::dim);
+    std::vector<ui::Tile> tiles;
+    for (size_t i = 0; i < app.layer_names.size(); ++i)
+        tiles.push_back({.caption = app.layer_names[i],
+                         .texture = i < app.layer_pictures.size() ? app.layer_pictures[i] : 0});
+    int selected = app.layer();
+    if (ui::tile_grid(ui, "layers", tiles, selected, {.picture = 56})) {
+        app.set_layer(selected);
+        app.set_tool(Tool::paint);
+    }
+}
+
+void sun_properties(App& app, ui::Ui& ui) {
+    ProjectSettings settings = app.session.document().settings();
+    double azimuth = std::remainder(settings.sun_azimuth_rad, 2 * M_PI) * kDegrees;
+    if (azimuth < 0) azimuth += 360;
+    double elevation = settings.sun_elevation_rad * kDegrees, haze = settings.haze_per_km;
+    bool changed = ui::slider(ui, "Azimuth", azimuth,
+                              {.min = 0, .max = 360, .decimals = 0, .unit = "°", .tooltip = "Clockwise from north"})
+                       .changed;
+    changed |= ui::slider(ui, "Elevation", elevation, {.min = 0, .max = 90, .decimals = 0, .unit = "°"}).changed;
+    changed |= ui::slider(ui, "Haze", haze,
+                          {.min = 0, .max = 0.5, .decimals = 3, .unit = "/km", .tooltip = "Extinction at sea level"})
+                   .changed;
+    if (!changed) return;
+    settings.sun_azimuth_rad = azimuth / kDegrees;
+    settings.sun_elevation_rad = elevation / kDegrees;
+    settings.haze_per_km = haze;
+    app.change_settings(settings);
+}
+
+// Newest first; a press goes there.
+void history_row(App& app, ui::Ui& ui, const HistoryStep& step, bool current) {
+    const ui::Theme& theme = ui.theme;
+    const ui::Rect row = ui.allocate({0, ui.px(22)});
+    const ui::Response r = ui.interact(ui.make_id(fmt::format("step{}", step.last_sequence)), row, ui::Sense::click);
+    if (current) ui.draw().rect(row, theme.accent_soft, ui.px(3));
+    else if (r.hovered) ui.draw().rect(row, theme.hover, ui.px(3));
+    ui::Rect text = row.inset(ui.px(8), 0);
+    const std::string count = step.command_count > 1 ? fmt::format("{}", step.command_count) : std::string();
+    const ui::Color color = step.applied ? theme.text : theme.text_disabled;
+    ui.draw_label(ui::cut(text, ui::Edge::right, ui.px(36)), count, ui.small_style(), theme.text_dim,
+                  ui::Ui::Align::right);
+    ui.draw_label(text, step.title, ui.style(), color);
+    if (r.clicked) app.go_to(step.last_sequence);
+}
+
+void history_list(App& app, ui::Ui& ui) {
+    const std::vector<HistoryStep> steps = app.history(); // by value: a press changes it
+    if (steps.empty()) return ui::label(ui, "Nothing done yet", ui::Tone::dim);
+    size_t current = steps.size();
+    for (size_t i = 0; i < steps.size(); ++i)
+        if (steps[i].applied) current = i;
+    for (size_t i = steps.size(); i-- > 0;) history_row(app, ui, steps[i], i == current);
+}
+
+} // namespace
+
+void build_properties(App& app, ui::Ui& ui) {
+    auto panel = ui::panel(ui, "properties", {.edge = ui::Edge::right, .size = 276, .resizable = true, .scroll = true});
+    const std::string title = fmt::format("{}##tool", tool_title(app.tools.tool));
+    if (auto section = ui::section(ui, title)) tool_properties(app, ui);
+    if (auto section = ui::section(ui, "Layers")) layer_palette(app, ui);
+    if (auto section = ui::section(ui, "Sun")) sun_properties(app, ui);
+    if (auto section = ui::section(ui, "History")) history_list(app, ui);
+}
+
+} // namespace loam::window

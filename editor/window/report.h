@@ -1,0 +1,42 @@
+// What the window does, as one JSON object a line on stdout: for tests that drive a real window, and for measurements.
+//
+//   {"event":"ready","ms":…}                          the first whole picture is on screen
+//   {"event":"viewport","rect":[x,y,w,h],"window":[w,h]}  after every change
+//   {"event":"command","command":{…}}                 committed
+//   {"event":"message","text":…}                      of the status line
+//   {"event":"motion","frames":…,"median_ms":…,"p95_ms":…,"scale":…}  when what moved came to rest
+//   {"event":"idle","redraws":…,"scene_frames":…}     nothing will be drawn until something happens
+//   {"event":"closed","redraws":…,"validation_messages":…}
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "runtime/document/command.h"
+#include "ui/geometry.h"
+
+namespace loam::window {
+
+class Report {
+  public:
+    explicit Report(bool enabled) : enabled_(enabled) {}
+
+    void ready(double ms);
+    void viewport(const ui::Rect& rect, uint32_t width, uint32_t height);
+    void command(const Command& command);
+    void message(const std::string& text);
+    void frame_in_motion(double ms) { motion_ms_.push_back(ms); }
+    void motion_ends(float scale);
+    void idle(uint64_t redraws, uint64_t scene_frames);
+    void closed(uint64_t redraws, uint32_t validation_messages);
+
+  private:
+    bool enabled_;
+    ui::Rect viewport_{-1, -1, 0, 0};
+    std::string message_;
+    std::vector<double> motion_ms_;
+    uint64_t idle_redraws_ = ~uint64_t{0};
+};
+
+} // namespace loam::window

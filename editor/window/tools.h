@@ -1,0 +1,108 @@
+// The tools: from what the left mouse button does over the ground to commands. No window, no device.
+//
+// A stroke is everything between press and release; its commands share one group and are undone together. Modifiers
+// while pressing: Ctrl turns raise into lower and back, picks the height (flatten) or the layer (paint) under the
+// cursor; Shift smooths.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "editor/window/stroke.h"
+#include "runtime/document/command.h"
+
+namespace loam::window {
+
+enum class Tool { raise, lower, smooth, flatten, paint, crater, footprints };
+inline constexpr int kToolCount = 7;
+[[nodiscard]] std::string_view tool_name(Tool tool);   // "raise": also the action's name
+[[nodiscard]] std::string_view tool_title(Tool tool);  // "Raise"
+
+struct Brush {
+    double radius_m = 10;
+    double strength = 0.5; // 0 … 1 of what the tool can do in a dab
+    double hardness = 0.4;
+};
+
+struct ToolSettings {
+    std::array<Brush, kToolCount> brushes; // a tool keeps its own
+    double flatten_target_m = 0;
+    bool flatten_fixed = false;            // else the height where the stroke began
+    std::string layer;
+    bool use_tint = false;
+    glm::vec3 tint{1, 1, 1};               // sRGB-encoded
+    double min_slope_rad = 0, max_slope_rad = 1.5707963267948966;
+    double crater_depth_share = 0.4;       // of the radius
+    uint32_t seed = 1;
+    GaitDesc gait;
+};
+
+struct ToolInput {
+    std::optional<glm::dvec3> ground; // under the cursor
+    bool pressed = false, held = false, released = false; // left button on the viewport
+    bool ctrl = false, shift = false;
+    double moved_px = 0;              // from where the button went down
+    double camera_yaw_rad = 0;
+    double dt_s = 0;
+};
+
+// What the tools ask the document.
+struct ToolQueries {
+    std::function<uint64_t()> next_group;
+    std::function<std::string(double x_m, double y_m)> layer_at;
+};
+
+class ToolController {
+  public:
+    explicit ToolController(ToolQueries queries);
+
+    Tool tool = Tool::raise;
+    ToolSettings settings;
+    [[nodiscard]] Brush& brush() { return settings.brushes[size_t(tool)]; }
+    [[nodiscard]] const Brush& brush() const { return settings.brushes[size_t(tool)]; }
+
+    // One frame's input gives the commands to apply now, at most one of each kind.
+    std::vector<Command> update(const ToolInput& input);
+    [[nodiscard]] bool stroking() const { return stroking_; }
+    void cancel();
+
+    // What to draw around the cursor.
+    struct Ring {
+        glm::dvec2 center_m{0};
+        double radius_m = 0, inner_share = 0;
+    };
+    [[nodiscard]] std::optional<Ring> ring(const ToolInput& input) const;
+
+    // Height that one dab of full strength moves: grows with the brush, so that a hill keeps its shape at any size.
+    [[nodiscard]] static double dab_height_m(const Brush& brush) { return brush.strength * brush.radius_m * 0.05; }
+    static constexpr double kSpacingShare = 0.25;   // of the radius, between dabs
+    static constexpr double kHeldDabsPerSecond = 14;
+    static constexpr double kLargestRadius_m = 2000, kSmallestRadius_m = 0.1;
+
+  private:
+    void begin(const ToolInput& input);
+    std::optional<Command> sculpt(const ToolInput& input);
+    std::optional<Command> paint(const ToolInput& input);
+    std::optional<Command> crater(const ToolInput& input);
+    std::optional<Command> footprints(const ToolInput& input);
+    std::vector<glm::dvec2> dabs(const ToolInput& input, bool also_resting);
+    [[nodiscard]] double crater_radius_m(const ToolInput& input) const;
+
+    ToolQueries queries_;
+    bool stroking_ = false, picking_ = false;
+    Tool stroke_tool_ = Tool::raise; // after modifiers
+    uint64_t group_ = 0;
+    uint32_t command_count_ = 0;
+    StrokeSpacer spacer_;
+    Gait gait_;
+    double resting_s_ = 0, target_m_ = 0;
+    glm::dvec2 center_m_{0};
+};
+
+} // namespace loam::window

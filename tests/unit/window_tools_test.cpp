@@ -1,0 +1,147 @@
+// The tools: from presses and drags over the ground to commands.
+#include <gtest/gtest.h>
+
+#include "editor/window/tools.h"
+
+using namespace loam;
+using namespace loam::window;
+
+namespace {
+
+struct Bench {
+    uint64_t groups = 0;
+    ToolController tools{{.next_group = [this] { return ++groups; }, .layer_at = [](double, double) { return std::string("rock"); }}};
+    std::vector<Command> all;
+
+    void step(double x, double y, bool pressed, bool released, double dt_s = 0.03, ToolInput extra = {}) {
+        ToolInput input = extra;
+        input.ground = glm::dvec3(x, y, 12);
+        input.pressed = pressed;
+        input.held = !released;
+        input.released = released;
+        input.dt_s = dt_s;
+        for (Command& command : tools.update(input)) all.push_back(std::move(command));
+    }
+    template <typename T>
+    const T& body(size_t i) const { return std::get<T>(all.at(i).body); }
+};
+
+TEST(Tools, AStrokeIsOneGroupAndItsDabsAreAQuarterOfTheRadiusApart) {
+    Bench b;
+    b.tools.brush().radius_m = 4;
+    b.step(0, 0, true, false);
+    b.step(3, 0, false, false);
+    b.step(7, 0, false, true);
+    b.step(0, 0, true, false);
+    b.step(0, 0, false, true);
+    size_t dabs = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        EXPECT_EQ(b.all[i].group, 1u);
+        dabs += b.body<SculptCommand>(i).dabs.size();
+    }
+    EXPECT_EQ(dabs, 8u); // 0, 1, … 7
+    EXPECT_EQ(b.all[3].group, 2u);
+    EXPECT_FALSE(b.tools.stroking());
+}
+
+TEST(Tools, HoldingStillKeepsWorkingAtTheSameRateForAnyFrameRate) {
+    for (const double dt : {0.008, 0.033, 0.1}) {
+        Bench b;
+        b.step(5, 5, true, false, dt);
+        for (double t = 0; t < 1.0; t += dt) b.step(5, 5, false, false, dt);
+        size_t dabs = 0;
+        for (size_t i = 0; i < b.all.size(); ++i) dabs += b.body<SculptCommand>(i).dabs.size();
+        EXPECT_NEAR(double(dabs), 1 + ToolController::kHeldDabsPerSecond, 2.0) << dt;
+    }
+}
+
+TEST(Tools, ModifiersTurnAStroke) {
+    Bench b;
+    b.step(0, 0, true, false, 0.03, {.ctrl = true});
+    EXPECT_EQ(b.body<SculptCommand>(0).mode, SculptMode::lower);
+    b.step(0, 0, false, true);
+    b.all.clear();
+    b.step(0, 0, true, false, 0.03, {.shift = true});
+    EXPECT_EQ(b.body<SculptCommand>(0).mode, SculptMode::smooth);
+}
+
+TEST(Tools, FlattenGoesToWhereTheStrokeBeganAndCtrlPicks) {
+    Bench b;
+    b.tools.tool = Tool::flatten;
+    b.step(0, 0, true, false);
+    EXPECT_DOUBLE_EQ(b.body<SculptCommand>(0).target_m, 12);
+    b.step(0, 0, false, true);
+    b.all.clear();
+    b.step(0, 0, true, false, 0.03, {.ctrl = true});
+    b.step(0, 0, false, true);
+    EXPECT_TRUE(b.all.empty());
+    EXPECT_TRUE(b.tools.settings.flatten_fixed);
+    EXPECT_DOUBLE_EQ(b.tools.settings.flatten_target_m, 12);
+}
+
+TEST(Tools, PaintNeedsALayerOrATintAndCtrlPicksTheLayer) {
+    Bench b;
+    b.tools.tool = Tool::paint;
+    b.step(0, 0, true, false);
+    b.step(0, 0, false, true);
+    EXPECT_TRUE(b.all.empty());
+    b.step(0, 0, true, false, 0.03, {.ctrl = true});
+    b.step(0, 0, false, true);
+    EXPECT_EQ(b.tools.settings.layer, "rock");
+    b.step(0, 0, true, false);
+    EXPECT_EQ(b.body<PaintCommand>(0).layer, "rock");
+}
+
+TEST(Tools, ACraterIsPlacedOnReleaseAndADragSetsItsRadius) {
+    Bench b;
+    b.tools.tool = Tool::crater;
+    b.tools.brush().radius_m = 8;
+    b.step(100, 100, true, false);
+    EXPECT_TRUE(b.all.empty());
+    b.step(101, 100, false, true, 0.03, {.moved_px = 2});
+    EXPECT_DOUBLE_EQ(b.body<CraterCommand>(0).crater.radius_m, 8);
+    b.step(100, 100, true, false);
+    b.step(120, 100, false, true, 0.03, {.moved_px = 90});
+    const Crater& dragged = b.body<CraterCommand>(1).crater;
+    EXPECT_DOUBLE_EQ(dragged.radius_m, 20);
+    EXPECT_DOUBLE_EQ(dragged.x_m, 100);
+    EXPECT_DOUBLE_EQ(dragged.depth_m, 20 * b.tools.settings.crater_depth_share);
+    EXPECT_NE(dragged.seed, b.body<CraterCommand>(0).crater.seed);
+}
+
+TEST(Tools, AClickLeavesOneFootprintAndADragATrail) {
+    Bench b;
+    b.tools.tool = Tool::footprints;
+    b.step(0, 0, true, false);
+    b.step(0, 0, false, true, 0.03, {.camera_yaw_rad = 0.4});
+    ASSERT_EQ(b.all.size(), 1u);
+    EXPECT_DOUBLE_EQ(b.body<FootprintsCommand>(0).prints.at(0).heading_rad, 0.4);
+    b.all.clear();
+    b.step(0, 0, true, false);
+    b.step(0, 6, false, false);
+    b.step(0, 6, false, true);
+    ASSERT_EQ(b.all.size(), 1u);
+    EXPECT_GE(b.body<FootprintsCommand>(0).prints.size(), 7u);
+}
+
+TEST(Tools, OverTheSkyNothingHappensAndTheStrokeIsNotJoinedAcrossIt) {
+    Bench b;
+    b.tools.brush().radius_m = 4;
+    b.tools.update({.pressed = true, .held = true});
+    EXPECT_FALSE(b.tools.stroking());
+    b.step(0, 0, true, false);
+    b.tools.update({.held = true, .dt_s = 0.03});
+    b.all.clear();
+    b.step(100, 0, false, false);
+    EXPECT_EQ(b.body<SculptCommand>(0).dabs.size(), 1u);
+}
+
+TEST(Tools, ALostCaptureEndsTheStroke) {
+    Bench b;
+    b.step(0, 0, true, false);
+    EXPECT_TRUE(b.tools.stroking());
+    b.tools.update({.ground = glm::dvec3(0)});
+    EXPECT_FALSE(b.tools.stroking());
+}
+
+} // namespace
