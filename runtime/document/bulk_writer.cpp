@@ -183,7 +183,7 @@ Status BulkWriter::finish() {
     Status status = impl_->write_counts(count);
     if (!status.ok()) return impl_->fail(status);
     {
-        const std::unique_lock exclusive(document.mutex);
+        const Document::Impl::Exclusive exclusive(document);
         status = document.store.commit();
         if (!status.ok()) return impl_->fail(status);
         document.pages->clear();

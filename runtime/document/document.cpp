@@ -1,6 +1,7 @@
 #include "runtime/document/document.h"
 
 #include <bit>
+#include <chrono>
 
 #include "runtime/base/check.h"
 #include "runtime/base/log.h"
@@ -191,7 +192,7 @@ uint64_t Document::next_group() {
 }
 
 Result<std::vector<Document::HistoryEntry>> Document::history(int newest_count) const {
-    const ReadLock lock = read_lock();
+    const ReadLock lock(impl_->mutex);
     const auto& heads = impl_->heads;
     std::vector<HistoryEntry> entries;
     if (heads.empty() || newest_count <= 0) return entries;
@@ -215,13 +216,14 @@ Status Document::change_settings(const ProjectSettings& settings) {
     for (size_t i = 0; i < before.size(); ++i)
         if (before[i] != after[i]) return error("{} cannot change once a project exists", before[i].first);
     LOAM_TRY(save_project(impl_->folder, settings));
-    const std::unique_lock lock(impl_->mutex);
+    const Impl::Exclusive lock(*impl_);
     impl_->settings = settings;
     ++impl_->revision;
     return {};
 }
 
 Document::ReadLock Document::read_lock() const {
+    const std::unique_lock after_writers(impl_->gate, std::chrono::milliseconds(20));
     return ReadLock(impl_->mutex);
 }
 void Document::read_heights_mm(int mip, int x0, int y0, int width, int height, int32_t* out) const {
@@ -251,7 +253,7 @@ void Document::operators_over_texture(const WorldRect& rect, std::vector<const O
     impl_->operators.over_texture().query(rect, out);
 }
 std::vector<Operator> Document::operators() const {
-    const ReadLock lock = read_lock();
+    const ReadLock lock(impl_->mutex);
     return impl_->operators.sorted();
 }
 
@@ -267,7 +269,7 @@ int Document::layer_index(std::string_view name) const {
 }
 
 Document::Statistics Document::statistics() const {
-    const ReadLock lock = read_lock();
+    const ReadLock lock(impl_->mutex);
     Statistics s;
     s.height_pages = uint64_t(impl_->page_count.height);
     s.index_pages = uint64_t(impl_->page_count.index);
@@ -280,7 +282,7 @@ Document::Statistics Document::statistics() const {
 }
 
 Result<uint64_t> Document::content_digest() const {
-    const ReadLock lock = read_lock();
+    const ReadLock lock(impl_->mutex);
     uint64_t digest = 0xcbf29ce484222325ull;
     const Status status = impl_->pages->with_store([&](PageStore& reader) -> Status {
         LOAM_TRY(reader.for_each_page([&](int64_t key, std::span<const uint8_t> blob) {

@@ -6,7 +6,8 @@
 //  2. `undo` then `redo` (and the other way) restore pages, operators and journal bit for bit.
 //  3. A mip-m sample of a base map equals the mip-0 sample at the same place.
 //  4. Reads may come from any thread; `apply`, `undo`, `redo` and `BulkWriter` from one thread at a time. A reader sees the
-//     state before or after a command, never between (hold a ReadLock over several reads that must agree).
+//     state before or after a command, never between (hold a ReadLock over several reads that must agree). While a
+//     command is made visible readers wait; hold a ReadLock for milliseconds, not for a frame.
 #pragma once
 
 #include <cstdint>
@@ -24,7 +25,14 @@
 
 namespace loam {
 
-// World rectangles that a change touched, per map. `texture` holds what is drawn into the texture only (decals);
+// World rectangles that a change touched, per map: at most 64, 8 for a stroke, possibly overlapping. Everything that interpolates
+// base samples as described here and lies outside of them is as before.
+//  - height: the changed samples grown by 2 base spacings, as the height map interpolates bicubically (4x4 samples).
+//  - index: the changed texels grown by 1 spacing (nearest or bilinear).
+//  - where a changed sample lies on the map's edge the rectangle goes on 65,536 m outwards, as all reads beyond the edge give
+//    the nearest sample inside.
+//  - operators: their bounds in the map (operator.h), exactly.
+// `texture` holds what is drawn into the texture only (decals);
 // what follows from index or height is derived by the layers that read them.
 struct Dirt {
     std::vector<WorldRect> height, index, texture;
@@ -56,7 +64,7 @@ class Document {
         bool applied = true;
         std::string json; // the command
     };
-    [[nodiscard]] Result<std::vector<HistoryEntry>> history(int newest_count) const;
+    [[nodiscard]] Result<std::vector<HistoryEntry>> history(int newest_count) const; // newest first
     [[nodiscard]] uint64_t next_group(); // a fresh group number for a stroke
 
     // Settings that may change later (sun, haze, layer list): writes project.toml.
@@ -71,7 +79,8 @@ class Document {
     void read_index(int mip, int x0, int y0, int width, int height, IndexTexel* out) const;
     [[nodiscard]] int height_mip_count() const; // down to one page
     [[nodiscard]] int index_mip_count() const;
-    [[nodiscard]] glm::ivec2 index_size_texels() const; // of mip 0: covers bounds()
+    // Of mip 0. Texel (i, j) stands at world (i, j) * index_spacing_m, as height samples do; the last ones at or beyond bounds().
+    [[nodiscard]] glm::ivec2 index_size_texels() const;
     // Enabled operators whose bounds in the map overlap, in order of evaluation. Valid while the ReadLock is held.
     void operators_over_height(const WorldRect& rect, std::vector<const Operator*>& out) const;
     void operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const;
@@ -98,8 +107,8 @@ class Document {
     std::unique_ptr<Impl> impl_;
 };
 
-// Writes whole maps (import, recipes) without journal: rows south to north, any number at a time; `finish` builds the mips
-// and commits. Dropped without `finish`: nothing changed. Refused when the journal holds commands (they could not be undone).
+// Writes whole maps (import, recipes) without journal: rows south to north, any number at a time, from row 0 to the last; a map of
+// which no row was given stays as it is. `finish` builds the mips and commits. Commands are refused meanwhile. Dropped without `finish`: nothing changed. Refused when the journal holds commands (they could not be undone).
 class BulkWriter {
   public:
     explicit BulkWriter(Document& document);

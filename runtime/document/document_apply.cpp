@@ -1,6 +1,7 @@
 // Commands: compute on copies, one transaction, then show it. Undo and redo: the same swap of rows and images.
 #include <algorithm>
 
+#include "runtime/base/log.h"
 #include "runtime/document/dirt.h"
 #include "runtime/document/document_impl.h"
 #include "runtime/document/operator_json.h"
@@ -158,7 +159,7 @@ Result<Dirt> Document::Impl::commit_change(Change& change, const Command& comman
     LOAM_TRY(store.begin());
     Status status = write_change(change, row, before);
     if (status.ok()) {
-        const std::unique_lock exclusive(mutex);
+        const Exclusive exclusive(*this);
         status = store.commit();
         if (status.ok()) {
             if (change.heights) change.heights->publish(change.height_changes);
@@ -217,7 +218,7 @@ Result<Dirt> Document::Impl::swap_commands(size_t first, size_t end, bool applie
     LOAM_TRY(store.begin());
     Status status = write_swaps(first, end, applied, change, balance);
     if (status.ok()) {
-        const std::unique_lock exclusive(mutex);
+        const Exclusive exclusive(*this);
         status = store.commit();
         if (status.ok()) {
             for (const PageChange& page : change.height_changes) pages->forget(page.key);
@@ -233,6 +234,12 @@ Result<Dirt> Document::Impl::swap_commands(size_t first, size_t end, bool applie
     return status.error();
 }
 
+// After the readers have been let in again. A failure costs nothing: the log stays and grows.
+void Document::Impl::tidy_log() {
+    const Status status = store.checkpoint_when_due();
+    if (!status.ok()) log(LogLevel::warning, "{}", status.message());
+}
+
 Result<Dirt> Document::apply(const Command& command) {
     if (std::holds_alternative<UndoCommand>(command.body)) return undo();
     if (std::holds_alternative<RedoCommand>(command.body)) return redo();
@@ -242,7 +249,9 @@ Result<Dirt> Document::apply(const Command& command) {
     change.next_operator = impl_->next_operator;
     LOAM_TRY(std::visit([&](const auto& body) { return impl_->compute(body, change); }, command.body));
     merge_dirt(change.dirt, kMaxOperatorRects);
-    return impl_->commit_change(change, command);
+    auto dirt = impl_->commit_change(change, command);
+    impl_->tidy_log();
+    return dirt;
 }
 
 Result<Dirt> Document::undo() {
@@ -252,7 +261,9 @@ Result<Dirt> Document::undo() {
     if (end == 0) return error("nothing to undo");
     size_t first = end - 1;
     while (first > 0 && heads[first].group != 0 && heads[first - 1].group == heads[first].group) --first;
-    return impl_->swap_commands(first, end, false);
+    auto dirt = impl_->swap_commands(first, end, false);
+    impl_->tidy_log();
+    return dirt;
 }
 
 Result<Dirt> Document::redo() {
@@ -262,7 +273,9 @@ Result<Dirt> Document::redo() {
     if (first == heads.size()) return error("nothing to redo");
     size_t end = first + 1;
     while (end < heads.size() && heads[first].group != 0 && heads[end].group == heads[first].group) ++end;
-    return impl_->swap_commands(first, end, true);
+    auto dirt = impl_->swap_commands(first, end, true);
+    impl_->tidy_log();
+    return dirt;
 }
 
 } // namespace loam

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <shared_mutex>
 #include <vector>
@@ -48,7 +49,17 @@ struct Document::Impl {
     PageBalance page_count;
     std::atomic<uint64_t> revision{1};
     mutable std::shared_mutex mutex; // exclusive while a change becomes visible
+    // Held by a writer that waits for `mutex`, so that readers who come one after another cannot keep it out. Readers wait
+    // here for a while only: a thread that already holds a ReadLock must get its second one.
+    mutable std::timed_mutex gate;
     bool bulk_writing = false;
+
+    // Exclusive access, for showing a change.
+    struct Exclusive {
+        explicit Exclusive(Impl& impl) : gate(impl.gate), lock(impl.mutex) {}
+        std::lock_guard<std::timed_mutex> gate;
+        std::lock_guard<std::shared_mutex> lock;
+    };
 
     Status load();
     Status may_write() const;
@@ -77,6 +88,7 @@ struct Document::Impl {
     Result<Dirt> commit_change(Change& change, const Command& command);
     // Swaps the rows of the journal heads [first, end), the direction that `applied` names, in one transaction.
     Result<Dirt> swap_commands(size_t first, size_t end, bool applied);
+    void tidy_log();
     Status write_swaps(size_t first, size_t end, bool applied, Change& change, PageBalance& balance);
 };
 

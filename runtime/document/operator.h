@@ -57,6 +57,9 @@ struct ResolvedRoles { // LayerRoles as indices
     uint16_t scorched = 0, broken = 0;
 };
 
+// Footprints change heights and are drawn into the texture; craters change heights, layers and tint, and may be drawn too. The
+// mathematics is in shaders/document/crater_math.h and footprint_math.h, for shaders as well.
+//
 // Heights in metres. A sample's result depends on the sample's position only, never on the grid it is part of:
 // pages of every level must agree.
 void apply_height(const Operator& op, const SampleGrid<double>& heights_m);

@@ -13,7 +13,6 @@ constexpr int64_t kApplicationId = 0x4C6F616D; // "Loam"
 constexpr int64_t kVersion = 1;
 
 // 8 KiB pages: most blobs (1–6 KiB) fit one without an overflow chain, and a small command rewrites few of them.
-// 2,000 of them, 16 MB, between checkpoints, which are the only time that a commit waits for the disk.
 constexpr const char* kSetUp = R"(
 PRAGMA page_size = 8192;
 PRAGMA journal_mode = WAL;
@@ -33,10 +32,12 @@ PRAGMA synchronous = NORMAL;
 PRAGMA foreign_keys = OFF;
 PRAGMA trusted_schema = OFF;
 PRAGMA cell_size_check = ON;
-PRAGMA wal_autocheckpoint = 2000;
 PRAGMA journal_size_limit = 67108864;
 PRAGMA cache_size = -16384;
 )";
+
+// Of 8 KiB: 16 MB of log. Checkpoints are the only time that writing waits for the disk, about 50 ms.
+constexpr int kDueFrames = 2000;
 
 Status check_identity(Database& database) {
     const auto application = database.query_integer("PRAGMA application_id");
@@ -84,6 +85,7 @@ Result<PageStore> PageStore::open(const std::filesystem::path& file, DatabaseMod
     LOAM_TRY(check_identity(store.database_));
     LOAM_TRY(store.database_.execute(kConfigure));
     LOAM_TRY(store.prepare_all());
+    store.database_.count_wal_frames();
     return store;
 }
 
@@ -280,6 +282,11 @@ Status PageStore::write_meta(std::string_view name, int64_t value) {
 
 Status PageStore::checkpoint() {
     return database_.execute("PRAGMA wal_checkpoint(TRUNCATE)");
+}
+
+Status PageStore::checkpoint_when_due() {
+    if (database_.wal_frames() < kDueFrames) return {};
+    return database_.execute("PRAGMA wal_checkpoint(PASSIVE)");
 }
 
 Result<std::vector<std::string>> PageStore::quick_check() {

@@ -88,7 +88,9 @@ class PageStore {
     Result<std::optional<int64_t>> read_meta(std::string_view name);
     Status write_meta(std::string_view name, int64_t value);
 
-    Status checkpoint();                           // moves the WAL into the database and empties it
+    Status checkpoint(); // moves the WAL into the database and empties it
+    // Moves the WAL into the database when it has grown to 16 MB: call it where waiting for the disk hurts nobody.
+    Status checkpoint_when_due();
     Result<std::vector<std::string>> quick_check(); // SQLite's own complaints; none: sound
     [[nodiscard]] uint64_t file_bytes() const;      // database and WAL
 

@@ -137,6 +137,15 @@ Result<Database> Database::open(const std::filesystem::path& file, DatabaseMode 
     return database;
 }
 
+void Database::count_wal_frames() {
+    wal_frames_ = std::make_unique<int>(0);
+    const auto hook = [](void* count, sqlite3*, const char*, int frames) {
+        *static_cast<int*>(count) = frames;
+        return SQLITE_OK;
+    };
+    sqlite3_wal_hook(handle_.get(), hook, wal_frames_.get());
+}
+
 Status Database::execute(const char* sql) {
     const int code = sqlite3_exec(handle_.get(), sql, nullptr, nullptr, nullptr);
     if (code != SQLITE_OK) return sentence(handle_.get(), code, file_.string());

@@ -55,11 +55,15 @@ class Database {
     Result<Statement> prepare(std::string_view sql);
     Result<int64_t> query_integer(std::string_view sql);
     [[nodiscard]] const std::filesystem::path& file() const { return file_; }
+    // Frames in the write-ahead log after this connection's last commit. Turns SQLite's own checkpoints off when called first.
+    void count_wal_frames();
+    [[nodiscard]] int wal_frames() const { return wal_frames_ ? *wal_frames_ : 0; }
 
   private:
     struct Close {
         void operator()(sqlite3* database) const;
     };
+    std::unique_ptr<int> wal_frames_; // on the heap, where SQLite's hook finds it after a move
     std::unique_ptr<sqlite3, Close> handle_;
     std::filesystem::path file_;
 };
