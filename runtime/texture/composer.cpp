@@ -21,7 +21,9 @@ glm::ivec2 encoded_size(const TexelRect& rect, int mip, PageFormat format) {
     return {rect.width() / step, rect.height() / step};
 }
 
-int unit_bytes(PageFormat format) { return format == PageFormat::bc1x3 ? 8 : 4; }
+int unit_bytes(PageFormat format) {
+    return format == PageFormat::bc1x3 ? 8 : 4;
+}
 
 // Per texture, of both mips, in units.
 uint32_t encoded_units(const TexelRect& rect, PageFormat format) {
@@ -29,50 +31,57 @@ uint32_t encoded_units(const TexelRect& rect, PageFormat format) {
     return uint32_t(a.x * a.y + b.x * b.y);
 }
 
-// Normals and gloss carry the picture; occlusion, metalness and feature bear more error. By eye on rock and grass.
+// Normals and gloss carry the picture; occlusion, metalness and feature bear more error. By eye on rock and
+// grass.
 constexpr float kWeights[3][4] = {{1, 1, 1, 0}, {0.7f, 1, 0.4f, 0}, {0.5f, 1, 0.3f, 0}};
 
-} // namespace
+}  // namespace
 
 struct Composer::Placed {
     ComposeJob job;
     glm::ivec2 scratch_min{0};
     shared::ComposePush push{};
     bool one_layer = false;
-    uint32_t first_unit = 0; // in the encoded buffer
+    uint32_t first_unit = 0;  // in the encoded buffer
 };
 
-Result<PageAtlas> make_page_atlas(gpu::Device& device, PageFormat format, uint32_t pages_x, uint32_t pages_y) {
+Result<PageAtlas> make_page_atlas(gpu::Device& device, PageFormat format, uint32_t pages_x,
+                                  uint32_t pages_y) {
     static constexpr const char* kNames[3] = {"page albedo", "page gloss normal", "page metal normal"};
     PageAtlas atlas;
     for (size_t i = 0; i < 3; ++i) {
         auto image = gpu::Image::create(
-            device, {.name = kNames[i],
-                     .format = format == PageFormat::bc1x3 ? VK_FORMAT_BC1_RGB_UNORM_BLOCK : VK_FORMAT_R8G8B8A8_UNORM,
-                     .width = pages_x * kPageTexels,
-                     .height = pages_y * kPageTexels,
-                     .mip_count = 2,
-                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+            device,
+            {.name = kNames[i],
+             .format = format == PageFormat::bc1x3 ? VK_FORMAT_BC1_RGB_UNORM_BLOCK : VK_FORMAT_R8G8B8A8_UNORM,
+             .width = pages_x * kPageTexels,
+             .height = pages_y * kPageTexels,
+             .mip_count = 2,
+             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+                      VK_IMAGE_USAGE_TRANSFER_DST_BIT});
         if (!image.ok()) return image.error();
         atlas[i] = std::move(*image);
     }
     return atlas;
 }
 
-Composer::Composer(const Document& document, IndexMap& index, LayerSet& layers, const TextureLayout& layout, PageFormat format)
+Composer::Composer(const Document& document, IndexMap& index, LayerSet& layers, const TextureLayout& layout,
+                   PageFormat format)
     : document_(document), index_(index), layers_(layers), layout_(layout), format_(format) {}
 
-Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Document& document, IndexMap& index,
-                                                   LayerSet& layers, const TextureLayout& layout, PageFormat format,
+Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Document& document,
+                                                   IndexMap& index, LayerSet& layers,
+                                                   const TextureLayout& layout, PageFormat format,
                                                    bool decals) {
     std::unique_ptr<Composer> composer(new Composer(document, index, layers, layout, format));
     for (gpu::Image& image : composer->scratch_) {
-        auto made = gpu::Image::create(device, {.name = "page scratch",
-                                                .format = VK_FORMAT_R8G8B8A8_UNORM,
-                                                .width = kScratchWidth,
-                                                .height = kScratchHeight,
-                                                .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                                                         VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
+        auto made =
+            gpu::Image::create(device, {.name = "page scratch",
+                                        .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                        .width = kScratchWidth,
+                                        .height = kScratchHeight,
+                                        .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                 VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
         if (!made.ok()) return made.error();
         image = std::move(*made);
     }
@@ -88,13 +97,14 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
 
     const auto compose = [&](uint32_t one_layer) {
         return gpu::Pipeline::create(
-            device, gpu::ComputeDesc{.name = one_layer ? "compose, one layer" : "compose",
-                                     .shader = "texture/compose.comp",
-                                     .bindings = {gpu::sampled_image(0), gpu::sampled_image(1), gpu::sampled_image(2),
-                                                  gpu::sampled_image(3), gpu::sampled_image(4), gpu::storage_buffer(5),
-                                                  gpu::storage_image(6), gpu::storage_image(7), gpu::storage_image(8)},
-                                     .push_bytes = sizeof(shared::ComposePush),
-                                     .constants = {{0, one_layer}, {1, layers.has_metal ? 1u : 0u}}});
+            device, gpu::ComputeDesc{
+                        .name = one_layer ? "compose, one layer" : "compose",
+                        .shader = "texture/compose.comp",
+                        .bindings = {gpu::sampled_image(0), gpu::sampled_image(1), gpu::sampled_image(2),
+                                     gpu::sampled_image(3), gpu::sampled_image(4), gpu::storage_buffer(5),
+                                     gpu::storage_image(6), gpu::storage_image(7), gpu::storage_image(8)},
+                        .push_bytes = sizeof(shared::ComposePush),
+                        .constants = {{0, one_layer}, {1, layers.has_metal ? 1u : 0u}}});
     };
     auto one = compose(1);
     if (!one.ok()) return one.error();
@@ -105,7 +115,8 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     for (uint32_t mip = 0; mip < 2; ++mip) {
         auto encode = gpu::Pipeline::create(
             device, gpu::ComputeDesc{.name = format == PageFormat::bc1x3 ? "page bc1" : "page rgba8",
-                                     .shader = format == PageFormat::bc1x3 ? "texture/bc1.comp" : "texture/pack_rgba8.comp",
+                                     .shader = format == PageFormat::bc1x3 ? "texture/bc1.comp"
+                                                                           : "texture/pack_rgba8.comp",
                                      .bindings = {gpu::sampled_image(0), gpu::storage_buffer(1)},
                                      .push_bytes = sizeof(shared::EncodePush),
                                      .constants = {{0, mip}}});
@@ -113,17 +124,19 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
         composer->encode_[mip] = std::move(*encode);
     }
     if (decals) {
-        constexpr VkColorComponentFlags kRgb = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT;
+        constexpr VkColorComponentFlags kRgb =
+            VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT;
         const auto decal = [&](const char* name, const char* fragment) {
-            return gpu::Pipeline::create(device, gpu::GraphicsDesc{.name = name,
-                                                                   .vertex_shader = "texture/decal.vert",
-                                                                   .fragment_shader = fragment,
-                                                                   .bindings = {gpu::storage_buffer(0)},
-                                                                   .constants = {},
-                                                                   .color_formats = std::vector(3, VK_FORMAT_R8G8B8A8_UNORM),
-                                                                   .blends = std::vector(3, gpu::Blend::alpha),
-                                                                   .write_masks = std::vector(3, kRgb),
-                                                                   .stencil = {}});
+            return gpu::Pipeline::create(
+                device, gpu::GraphicsDesc{.name = name,
+                                          .vertex_shader = "texture/decal.vert",
+                                          .fragment_shader = fragment,
+                                          .bindings = {gpu::storage_buffer(0)},
+                                          .constants = {},
+                                          .color_formats = std::vector(3, VK_FORMAT_R8G8B8A8_UNORM),
+                                          .blends = std::vector(3, gpu::Blend::alpha),
+                                          .write_masks = std::vector(3, kRgb),
+                                          .stencil = {}});
         };
         auto crater = decal("crater decal", "texture/decal_crater.frag");
         if (!crater.ok()) return crater.error();
@@ -136,8 +149,8 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     return composer;
 }
 
-shared::LayerPlace Composer::layer_place(double origin_x_m, double origin_y_m, double side_m, double texel_m, double tile_m,
-                                         int layer_texels) {
+shared::LayerPlace Composer::layer_place(double origin_x_m, double origin_y_m, double side_m, double texel_m,
+                                         double tile_m, int layer_texels) {
     const auto phase = [&](double at_m) {
         const double repeats = at_m / tile_m;
         return float(repeats - std::floor(repeats));
@@ -166,15 +179,17 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
                    .layer = 0,
                    .last_layer = uint32_t(layers_.count - 1)};
 
-    // One texel more on each side than the filter reads: the shader's floats may fall to the other side of a texel's edge.
+    // One texel more on each side than the filter reads: the shader's floats may fall to the other side of a
+    // texel's edge.
     const auto first = [&](int texel, double from) {
-        return std::clamp(int(std::floor(from + (texel - 3.5) / kPagePayload * scale)) - 1, 0, kIndexTexels - 1);
+        return std::clamp(int(std::floor(from + (texel - 3.5) / kPagePayload * scale)) - 1, 0,
+                          kIndexTexels - 1);
     };
     const auto last = [&](int texel, double from) {
         return std::clamp(int(std::floor(from + (texel - 4.5) / kPagePayload * scale)) + 3, 1, kIndexTexels);
     };
-    const TexelRect seen{first(job.rect.x0, origin.x), first(job.rect.y0, origin.y), last(job.rect.x1, origin.x),
-                         last(job.rect.y1, origin.y)};
+    const TexelRect seen{first(job.rect.x0, origin.x), first(job.rect.y0, origin.y),
+                         last(job.rect.x1, origin.x), last(job.rect.y1, origin.y)};
     const IndexTexel* texels = index_.resident_page(job.index_page);
     LOAM_CHECK(texels, "a page is composed from a resident index page only");
     const auto layer_at = [&](int x, int y) {
@@ -187,13 +202,15 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
     return placed;
 }
 
-Status Composer::cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const ComposeJob> jobs, PageAtlas& atlas) {
+Status Composer::cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const ComposeJob> jobs,
+                             PageAtlas& atlas) {
     std::vector<Placed> batch;
     glm::ivec2 at(0);
     int shelf_height = 0;
     for (const ComposeJob& job : jobs) {
         const int width = job.rect.width(), height = job.rect.height();
-        LOAM_CHECK(width > 0 && height > 0 && width % 8 == 0 && height % 8 == 0 && job.rect.x0 % 8 == 0 && job.rect.y0 % 8 == 0,
+        LOAM_CHECK(width > 0 && height > 0 && width % 8 == 0 && height % 8 == 0 && job.rect.x0 % 8 == 0 &&
+                       job.rect.y0 % 8 == 0,
                    "a page rectangle is aligned to 8 texels");
         if (at.x + width > kScratchWidth) at = {0, at.y + shelf_height}, shelf_height = 0;
         if (at.y + height > kScratchHeight) {
@@ -210,7 +227,8 @@ Status Composer::cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std:
     return {};
 }
 
-Status Composer::cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch, PageAtlas& atlas) {
+Status Composer::cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch,
+                           PageAtlas& atlas) {
     cmd_materials(ring, commands, batch);
     if (decals_) cmd_decals(ring, commands, batch);
     cmd_encode(commands, batch);
@@ -227,8 +245,9 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
         const WorldRect square = layout_.square(page);
         batch[i].push.first_place = uint32_t(i * layer_count);
         for (size_t layer = 0; layer < layer_count; ++layer)
-            out[i * layer_count + layer] = layer_place(square.min_x, square.min_y, layout_.page_side_m(page),
-                                                       layout_.texel_m(page), layers_.tiles_m[layer], layers_.size_texels);
+            out[i * layer_count + layer] =
+                layer_place(square.min_x, square.min_y, layout_.page_side_m(page), layout_.texel_m(page),
+                            layers_.tiles_m[layer], layers_.size_texels);
     }
     auto pass = commands.pass("texture compose", {{scratch_[0], Access::compute_storage},
                                                   {scratch_[1], Access::compute_storage},
@@ -255,7 +274,8 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
                                          {8, scratch_[2].mip_view(0)}});
             bound = true;
             commands.push(pipeline, placed.push);
-            commands.dispatch(uint32_t(placed.job.rect.width()) / kComposeGroup, uint32_t(placed.job.rect.height()) / kComposeGroup);
+            commands.dispatch(uint32_t(placed.job.rect.width()) / kComposeGroup,
+                              uint32_t(placed.job.rect.height()) / kComposeGroup);
         }
     }
 }
@@ -274,11 +294,13 @@ void Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::sp
     auto pass = commands.pass("texture decals", {{scratch_[0], Access::color_target},
                                                  {scratch_[1], Access::color_target},
                                                  {scratch_[2], Access::color_target}});
-    const std::array<gpu::ColorTarget, 3> targets{{{scratch_[0].mip_view(0)}, {scratch_[1].mip_view(0)}, {scratch_[2].mip_view(0)}}};
+    const std::array<gpu::ColorTarget, 3> targets{
+        {{scratch_[0].mip_view(0)}, {scratch_[1].mip_view(0)}, {scratch_[2].mip_view(0)}}};
     commands.begin_rendering({kScratchWidth, kScratchHeight}, targets);
     commands.set_viewport(0, 0, kScratchWidth, kScratchHeight);
     for (const DecalRun& run : list.runs) {
-        commands.bind(run.kind == DecalKind::crater ? crater_ : footprint_, {{0, *slice.buffer, slice.offset, bytes}});
+        commands.bind(run.kind == DecalKind::crater ? crater_ : footprint_,
+                      {{0, *slice.buffer, slice.offset, bytes}});
         commands.draw(6, run.count, 0, run.first);
     }
     commands.end_rendering();
@@ -298,16 +320,20 @@ void Composer::cmd_encode(gpu::Commands& commands, std::span<Placed> batch) {
         for (uint32_t which = 0; which < 3; ++which) {
             commands.bind(encode_[mip], {{0, scratch_[which].view(), nearest_}, {1, encoded_}});
             for (const Placed& placed : batch) {
-                const glm::ivec2 size = encoded_size(placed.job.rect, mip, format_), mip0 = encoded_size(placed.job.rect, 0, format_);
+                const glm::ivec2 size = encoded_size(placed.job.rect, mip, format_),
+                                 mip0 = encoded_size(placed.job.rect, 0, format_);
                 const uint32_t before = mip == 0 ? 0u : uint32_t(mip0.x * mip0.y);
-                commands.push(encode_[mip],
-                              shared::EncodePush{.scratch_min = placed.scratch_min,
-                                                 .size = size,
-                                                 .first = placed.first_unit + which * encoded_units(placed.job.rect, format_) + before,
-                                                 .albedo = which == 0 ? 1u : 0u,
-                                                 .unused = glm::vec2(0),
-                                                 .weights = {kWeights[which][0], kWeights[which][1], kWeights[which][2], 0}});
-                const uint32_t group_y = format_ == PageFormat::bc1x3 ? 1 : 8; // local sizes of the two shaders
+                commands.push(
+                    encode_[mip],
+                    shared::EncodePush{
+                        .scratch_min = placed.scratch_min,
+                        .size = size,
+                        .first = placed.first_unit + which * encoded_units(placed.job.rect, format_) + before,
+                        .albedo = which == 0 ? 1u : 0u,
+                        .unused = glm::vec2(0),
+                        .weights = {kWeights[which][0], kWeights[which][1], kWeights[which][2], 0}});
+                const uint32_t group_y =
+                    format_ == PageFormat::bc1x3 ? 1 : 8;  // local sizes of the two shaders
                 commands.dispatch((uint32_t(size.x) + 7) / 8, (uint32_t(size.y) + group_y - 1) / group_y);
             }
         }
@@ -326,18 +352,20 @@ void Composer::cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, 
             uint64_t unit = placed.first_unit + uint64_t(which) * encoded_units(rect, format_);
             for (int mip = 0; mip < 2; ++mip) {
                 const glm::ivec2 corner = placed.job.target * kPageTexels + glm::ivec2(rect.x0, rect.y0);
-                regions.push_back({.bufferOffset = unit * uint64_t(unit_bytes(format_)),
-                                   .bufferRowLength = 0,
-                                   .bufferImageHeight = 0,
-                                   .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, uint32_t(mip), 0, 1},
-                                   .imageOffset = {corner.x >> mip, corner.y >> mip, 0},
-                                   .imageExtent = {uint32_t(rect.width()) >> mip, uint32_t(rect.height()) >> mip, 1}});
+                regions.push_back(
+                    {.bufferOffset = unit * uint64_t(unit_bytes(format_)),
+                     .bufferRowLength = 0,
+                     .bufferImageHeight = 0,
+                     .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, uint32_t(mip), 0, 1},
+                     .imageOffset = {corner.x >> mip, corner.y >> mip, 0},
+                     .imageExtent = {uint32_t(rect.width()) >> mip, uint32_t(rect.height()) >> mip, 1}});
                 const glm::ivec2 size = encoded_size(rect, mip, format_);
                 unit += uint64_t(size.x) * uint64_t(size.y);
             }
         }
-        vkCmdCopyBufferToImage(commands.handle(), encoded_.handle(), atlas[which].handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                               uint32_t(regions.size()), regions.data());
+        vkCmdCopyBufferToImage(commands.handle(), encoded_.handle(), atlas[which].handle(),
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(regions.size()),
+                               regions.data());
     }
 }
 
@@ -345,4 +373,4 @@ uint64_t Composer::gpu_bytes() const {
     return scratch_[0].bytes() + scratch_[1].bytes() + scratch_[2].bytes() + encoded_.size_bytes();
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,9 +1,10 @@
-// Composes rectangles of pages on the GPU: materials (compute), decals (graphics), compression (compute), copy into the
-// physical textures. Many rectangles share the scratch images: they are packed on shelves, and a full scratch is flushed.
+// Composes rectangles of pages on the GPU: materials (compute), decals (graphics), compression (compute),
+// copy into the physical textures. Many rectangles share the scratch images: they are packed on shelves, and
+// a full scratch is flushed.
 //
-// A rectangle is aligned to 8 texels, so that it holds whole blocks of both mips. Each texel is a function of its place in the page
-// and of the inputs only: a rectangle composed alone has the bytes that it has as part of the whole page.
-// Source: Call of Duty talk, "Composition", "Compression", "Physical Textures".
+// A rectangle is aligned to 8 texels, so that it holds whole blocks of both mips. Each texel is a function of
+// its place in the page and of the inputs only: a rectangle composed alone has the bytes that it has as part
+// of the whole page. Source: Call of Duty talk, "Composition", "Compression", "Physical Textures".
 #pragma once
 
 #include <array>
@@ -21,32 +22,37 @@ namespace loam {
 
 struct ComposeJob {
     PageId page;
-    TexelRect rect;          // aligned to 8
-    glm::ivec2 target{0};    // physical page
-    MapPage index_page;      // resident and clean
+    TexelRect rect;        // aligned to 8
+    glm::ivec2 target{0};  // physical page
+    MapPage index_page;    // resident and clean
     int index_slot = 0;
 };
 
 using PageAtlas = std::array<gpu::Image, 3>;
-[[nodiscard]] Result<PageAtlas> make_page_atlas(gpu::Device& device, PageFormat format, uint32_t pages_x, uint32_t pages_y);
+[[nodiscard]] Result<PageAtlas> make_page_atlas(gpu::Device& device, PageFormat format, uint32_t pages_x,
+                                                uint32_t pages_y);
 
 class Composer {
   public:
-    static Result<std::unique_ptr<Composer>> create(gpu::Device& device, const Document& document, IndexMap& index,
-                                                    LayerSet& layers, const TextureLayout& layout, PageFormat format,
+    static Result<std::unique_ptr<Composer>> create(gpu::Device& device, const Document& document,
+                                                    IndexMap& index, LayerSet& layers,
+                                                    const TextureLayout& layout, PageFormat format,
                                                     bool decals);
-    Status cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const ComposeJob> jobs, PageAtlas& atlas);
+    Status cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const ComposeJob> jobs,
+                       PageAtlas& atlas);
 
     [[nodiscard]] uint64_t gpu_bytes() const;
     // How a layer lies in a page; also of use to tests.
-    static shared::LayerPlace layer_place(double origin_x_m, double origin_y_m, double side_m, double texel_m, double tile_m,
-                                          int layer_texels);
+    static shared::LayerPlace layer_place(double origin_x_m, double origin_y_m, double side_m, double texel_m,
+                                          double tile_m, int layer_texels);
 
   private:
-    struct Placed; // a job with its place in scratch and in the buffers
-    Composer(const Document& document, IndexMap& index, LayerSet& layers, const TextureLayout& layout, PageFormat format);
+    struct Placed;  // a job with its place in scratch and in the buffers
+    Composer(const Document& document, IndexMap& index, LayerSet& layers, const TextureLayout& layout,
+             PageFormat format);
     [[nodiscard]] Placed prepare(const ComposeJob& job, glm::ivec2 scratch_min);
-    Status cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch, PageAtlas& atlas);
+    Status cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch,
+                     PageAtlas& atlas);
     void cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std::span<Placed> batch);
     void cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch);
     void cmd_encode(gpu::Commands& commands, std::span<Placed> batch);
@@ -64,4 +70,4 @@ class Composer {
     bool decals_ = false;
 };
 
-} // namespace loam
+}  // namespace loam

@@ -9,8 +9,8 @@ namespace loam {
 
 namespace {
 
-// Below half a texel a decal is gone, from one texel on it is whole: a function of the page's level alone, so neighbouring
-// pages of a level agree.
+// Below half a texel a decal is gone, from one texel on it is whole: a function of the page's level alone, so
+// neighbouring pages of a level agree.
 float level_fade(double size_m, double texel_m) {
     return float(std::clamp(size_m / texel_m * 2.0 - 1.0, 0.0, 1.0));
 }
@@ -32,16 +32,19 @@ struct ShapeToInstance {
         kind = DecalKind::footprint;
         x_m = f.x_m;
         y_m = f.y_m;
-        out.shape = {float(f.length_m), float(f.depth_m), float(std::sin(f.heading_rad)), float(std::cos(f.heading_rad))};
+        out.shape = {float(f.length_m), float(f.depth_m), float(std::sin(f.heading_rad)),
+                     float(std::cos(f.heading_rad))};
         out.seed = f.seed;
         out.foot = uint32_t(f.foot);
         out.fade = level_fade(f.length_m * 0.6, texel_m);
     }
 };
 
-int clamped_int(double v) { return int(std::clamp(v, -1.0e8, 1.0e8)); }
+int clamped_int(double v) {
+    return int(std::clamp(v, -1.0e8, 1.0e8));
+}
 
-} // namespace
+}  // namespace
 
 TexelRect page_texels(const TextureLayout& layout, const PageId& page, const WorldRect& world) {
     if (world.empty()) return {};
@@ -54,12 +57,13 @@ TexelRect page_texels(const TextureLayout& layout, const PageId& page, const Wor
             clamped_int(std::ceil(texel(world.max_y, square.min_y)) + 1)};
 }
 
-void add_decals(const Document& document, const TextureLayout& layout, const PageId& page, const TexelRect& rect,
-                glm::ivec2 scratch_min, DecalList& list) {
+void add_decals(const Document& document, const TextureLayout& layout, const PageId& page,
+                const TexelRect& rect, glm::ivec2 scratch_min, DecalList& list) {
     const WorldRect square = layout.square(page);
     const double texel_m = layout.texel_m(page);
-    const WorldRect covered{square.min_x + (rect.x0 - kPageBorder) * texel_m, square.min_y + (rect.y0 - kPageBorder) * texel_m,
-                            square.min_x + (rect.x1 - kPageBorder) * texel_m, square.min_y + (rect.y1 - kPageBorder) * texel_m};
+    const WorldRect covered{
+        square.min_x + (rect.x0 - kPageBorder) * texel_m, square.min_y + (rect.y0 - kPageBorder) * texel_m,
+        square.min_x + (rect.x1 - kPageBorder) * texel_m, square.min_y + (rect.y1 - kPageBorder) * texel_m};
     std::vector<const Operator*> operators;
     document.operators_over_texture(covered, operators);
     for (const Operator* op : operators) {
@@ -83,4 +87,4 @@ void add_decals(const Document& document, const TextureLayout& layout, const Pag
     }
 }
 
-} // namespace loam
+}  // namespace loam

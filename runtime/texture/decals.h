@@ -27,12 +27,12 @@ struct DecalList {
     std::vector<DecalRun> runs;
 };
 
-// Appends the decals over `rect` (texels of the page with border); scratch_min is where rect's corner lies in scratch. The
-// caller holds the document's ReadLock.
-void add_decals(const Document& document, const TextureLayout& layout, const PageId& page, const TexelRect& rect,
-                glm::ivec2 scratch_min, DecalList& list);
+// Appends the decals over `rect` (texels of the page with border); scratch_min is where rect's corner lies in
+// scratch. The caller holds the document's ReadLock.
+void add_decals(const Document& document, const TextureLayout& layout, const PageId& page,
+                const TexelRect& rect, glm::ivec2 scratch_min, DecalList& list);
 
 // The texels of a page whose centres lie in a world rectangle, grown by one; not clipped.
 [[nodiscard]] TexelRect page_texels(const TextureLayout& layout, const PageId& page, const WorldRect& world);
 
-} // namespace loam
+}  // namespace loam

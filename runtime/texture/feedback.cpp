@@ -7,7 +7,7 @@ namespace loam {
 
 namespace {
 
-constexpr uint32_t kRootBias = 1u << 20; // above any count of cells
+constexpr uint32_t kRootBias = 1u << 20;  // above any count of cells
 
 bool before(const PageRequest& a, const PageRequest& b) {
     if (a.popularity != b.popularity) return a.popularity > b.popularity;
@@ -31,7 +31,7 @@ std::unordered_map<uint32_t, uint32_t> count_values(std::span<const uint32_t> va
     return counts;
 }
 
-} // namespace
+}  // namespace
 
 FeedbackResult analyse_feedback(const FeedbackInput& input) {
     FeedbackResult result;
@@ -42,7 +42,7 @@ FeedbackResult analyse_feedback(const FeedbackInput& input) {
         if (!input.images->valid[id]) continue;
         const ImageId image = input.images->image[id];
         const int mip = int(value >> 24 & 0x7f), width = input.layout.log2_width(image);
-        if (mip > width) continue; // no such page: noise must not become a request
+        if (mip > width) continue;  // no such page: noise must not become a request
         PageId page{image, width - mip, int(value & 0xff), int(value >> 8 & 0xff)};
         if (page.x >> page.depth != 0 || page.y >> page.depth != 0) continue;
         if ((value & kFeedbackFinerBit) != 0 && !image.live && mip == 0) result.wants_finer.push_back(page);
@@ -63,4 +63,4 @@ FeedbackResult analyse_feedback(const FeedbackInput& input) {
     return result;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -46,4 +46,4 @@ void IndirectionAllocator::release(glm::ivec2 origin, int log2_side) {
     LOAM_CHECK(fresh, "a square of the indirection texture was released twice");
 }
 
-} // namespace loam
+}  // namespace loam

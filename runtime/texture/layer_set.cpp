@@ -1,5 +1,6 @@
-// Layers of different sizes meet at the largest size among them, at most kMaxLayerTexels: a larger one drops its finest
-// mips, a smaller one is repeated (tile scale adjusted, so its texels keep their size in the world).
+// Layers of different sizes meet at the largest size among them, at most kMaxLayerTexels: a larger one drops
+// its finest mips, a smaller one is repeated (tile scale adjusted, so its texels keep their size in the
+// world).
 #include "runtime/texture/layer_set.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ namespace loam {
 
 namespace {
 
-constexpr int kMaxLayerTexels = 2048; // 8 layers of it are 360 MB: enough for texels of 1 mm on a 2 m tile
+constexpr int kMaxLayerTexels = 2048;  // 8 layers of it are 360 MB: enough for texels of 1 mm on a 2 m tile
 constexpr int kThumbnail = 64;
 
 LayerTextures flat_grey() {
@@ -64,7 +65,8 @@ std::vector<uint8_t> make_thumbnail(const LayerTextures& layer) {
     std::vector<uint8_t> out(size_t(kThumbnail) * kThumbnail * 4, 255);
     for (int y = 0; y < kThumbnail; ++y)
         for (int x = 0; x < kThumbnail; ++x) {
-            const size_t from = size_t((kThumbnail - 1 - y) * size / kThumbnail) * size_t(size) + size_t(x * size / kThumbnail);
+            const size_t from = size_t((kThumbnail - 1 - y) * size / kThumbnail) * size_t(size) +
+                                size_t(x * size / kThumbnail);
             std::memcpy(&out[size_t(y * kThumbnail + x) * 4], &layer.albedo_reveal[mip][from * 4], 3);
         }
     return out;
@@ -72,8 +74,8 @@ std::vector<uint8_t> make_thumbnail(const LayerTextures& layer) {
 
 using Mips = std::vector<std::vector<uint8_t>>;
 
-// Mip `level` of the common size out of a layer's own mips. 1x1 mips are reached by repetition, too: a smaller layer repeats `size`
-// times, so its coarsest mips stay at its own 1x1.
+// Mip `level` of the common size out of a layer's own mips. 1x1 mips are reached by repetition, too: a
+// smaller layer repeats `size` times, so its coarsest mips stay at its own 1x1.
 void fill_mip(const Mips& mips, int own_size, int size, int level, int texel_bytes, uint8_t* out) {
     const int side = std::max(1, size >> level);
     // The texels keep their size in the world: level 0 of the set is level `skip` of the layer.
@@ -96,7 +98,7 @@ struct Target {
     uint64_t offset = 0;
 };
 
-} // namespace
+}  // namespace
 
 Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const Document& document) {
     auto set = std::make_unique<LayerSet>();
@@ -127,27 +129,30 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
     while (size >> mip_count) ++mip_count;
 
     const auto make_image = [&](const char* name, VkFormat format, int side, uint32_t mips) {
-        return gpu::Image::create(device, {.name = name,
-                                           .format = format,
-                                           .width = uint32_t(side),
-                                           .height = uint32_t(side),
-                                           .mip_count = mips,
-                                           .layer_count = uint32_t(set->count),
-                                           .array_view = true,
-                                           .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+        return gpu::Image::create(device,
+                                  {.name = name,
+                                   .format = format,
+                                   .width = uint32_t(side),
+                                   .height = uint32_t(side),
+                                   .mip_count = mips,
+                                   .layer_count = uint32_t(set->count),
+                                   .array_view = true,
+                                   .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
     };
     auto albedo = make_image("layer albedo", VK_FORMAT_R8G8B8A8_SRGB, size, mip_count);
     if (!albedo.ok()) return albedo.error();
     auto normal = make_image("layer normal", VK_FORMAT_R8G8B8A8_UNORM, size, mip_count);
     if (!normal.ok()) return normal.error();
-    auto metal = make_image("layer metalness", VK_FORMAT_R8_UNORM, set->has_metal ? size : 1, set->has_metal ? mip_count : 1);
+    auto metal = make_image("layer metalness", VK_FORMAT_R8_UNORM, set->has_metal ? size : 1,
+                            set->has_metal ? mip_count : 1);
     if (!metal.ok()) return metal.error();
     set->albedo_reveal = std::move(*albedo);
     set->normal_gloss_occlusion = std::move(*normal);
     set->metalness = std::move(*metal);
 
     // One staging buffer of our own: through the frame ring it would stay for good.
-    std::vector<Target> targets = {{&set->albedo_reveal, {}, size, 4}, {&set->normal_gloss_occlusion, {}, size, 4}};
+    std::vector<Target> targets = {{&set->albedo_reveal, {}, size, 4},
+                                   {&set->normal_gloss_occlusion, {}, size, 4}};
     for (LayerTextures& l : layers) {
         targets[0].layers.push_back(&l.albedo_reveal);
         targets[1].layers.push_back(&l.normal_gloss_occlusion);
@@ -163,7 +168,8 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
     uint64_t total = 0;
     for (Target& t : targets) {
         t.offset = total;
-        for (uint32_t mip = 0; mip < t.image->mip_count(); ++mip) total += (mip_bytes(t, mip) * uint64_t(set->count) + 15) / 16 * 16;
+        for (uint32_t mip = 0; mip < t.image->mip_count(); ++mip)
+            total += (mip_bytes(t, mip) * uint64_t(set->count) + 15) / 16 * 16;
     }
     std::vector<shared::LayerParams> params(size_t(set->count));
     for (size_t i = 0; i < params.size(); ++i) {
@@ -175,10 +181,13 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
     }
     const uint64_t params_offset = total;
     const uint64_t params_bytes = params.size() * sizeof(shared::LayerParams);
-    auto staging = gpu::Buffer::create(device, {.name = "layer staging", .size_bytes = total + params_bytes,
-                                                .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT, .memory = gpu::MemoryUse::upload});
+    auto staging = gpu::Buffer::create(device, {.name = "layer staging",
+                                                .size_bytes = total + params_bytes,
+                                                .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                .memory = gpu::MemoryUse::upload});
     if (!staging.ok()) return staging.error();
-    auto parameters = gpu::Buffer::create(device, {.name = "layer parameters", .size_bytes = params_bytes,
+    auto parameters = gpu::Buffer::create(device, {.name = "layer parameters",
+                                                   .size_bytes = params_bytes,
                                                    .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
     if (!parameters.ok()) return parameters.error();
     set->parameters = std::move(*parameters);
@@ -189,8 +198,8 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
             for (const Target& t : targets) {
                 uint64_t at = t.offset;
                 for (uint32_t mip = 0; mip < t.image->mip_count(); ++mip) {
-                    fill_mip(*t.layers[size_t(layer)], layers[size_t(layer)].size_texels, t.size, int(mip), t.texel_bytes,
-                             bytes + at + mip_bytes(t, mip) * uint64_t(layer));
+                    fill_mip(*t.layers[size_t(layer)], layers[size_t(layer)].size_texels, t.size, int(mip),
+                             t.texel_bytes, bytes + at + mip_bytes(t, mip) * uint64_t(layer));
                     at += (mip_bytes(t, mip) * uint64_t(set->count) + 15) / 16 * 16;
                 }
             }
@@ -223,7 +232,8 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
             at += (mip_bytes(t, mip) * uint64_t(set->count) + 15) / 16 * 16;
         }
         vkCmdCopyBufferToImage(commands.handle(), staging->handle(), t.image->handle(),
-                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(regions.size()), regions.data());
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(regions.size()),
+                               regions.data());
     }
     const VkBufferCopy region{params_offset, 0, params_bytes};
     vkCmdCopyBuffer(commands.handle(), staging->handle(), set->parameters.handle(), 1, &region);
@@ -231,4 +241,4 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
     return set;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,5 +1,5 @@
-// Which square of the world a texture page is. A page is known by its square (image, depth below the image's root, x, y), never
-// by a mip number.
+// Which square of the world a texture page is. A page is known by its square (image, depth below the image's
+// root, x, y), never by a mip number.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ struct ImageId {
 
 struct PageId {
     ImageId image;
-    int depth = 0, x = 0, y = 0; // depth 0 is the root
+    int depth = 0, x = 0, y = 0;  // depth 0 is the root
     bool operator==(const PageId&) const = default;
     [[nodiscard]] PageId parent() const { return {image, depth - 1, x >> 1, y >> 1}; }
 };
@@ -38,7 +38,7 @@ struct PageIdHash {
 // The sizes of the images.
 struct TextureLayout {
     int default_log2_width = 0;  // pages
-    int default_log2_page = 0;   // log2 of (side of the finest default page / 64 m): 1 for maps above 16,384 m
+    int default_log2_page = 0;  // log2 of (side of the finest default page / 64 m): 1 for maps above 16,384 m
     int sector_log2_width = 6;
 
     [[nodiscard]] int log2_width(const ImageId& image) const {
@@ -47,7 +47,9 @@ struct TextureLayout {
     [[nodiscard]] double image_side_m(const ImageId& image) const {
         return image.live ? kSectorSize_m : std::ldexp(kSectorSize_m, default_log2_width + default_log2_page);
     }
-    [[nodiscard]] double page_side_m(const PageId& page) const { return std::ldexp(image_side_m(page.image), -page.depth); }
+    [[nodiscard]] double page_side_m(const PageId& page) const {
+        return std::ldexp(image_side_m(page.image), -page.depth);
+    }
     [[nodiscard]] double texel_m(const PageId& page) const { return page_side_m(page) / kPagePayload; }
     [[nodiscard]] int mip(const PageId& page) const { return log2_width(page.image) - page.depth; }
     // The payload's square.
@@ -59,7 +61,8 @@ struct TextureLayout {
     }
 };
 
-// The smallest default image that covers the map: at most 256 pages wide, as a page coordinate has eight bits.
+// The smallest default image that covers the map: at most 256 pages wide, as a page coordinate has eight
+// bits.
 [[nodiscard]] inline TextureLayout texture_layout(const WorldRect& bounds, int sector_log2_width) {
     TextureLayout layout;
     layout.sector_log2_width = sector_log2_width;
@@ -71,4 +74,4 @@ struct TextureLayout {
     return layout;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -7,8 +7,10 @@
 namespace loam {
 
 namespace {
-bool is_default_root(const PageId& page) { return !page.image.live && page.depth == 0; }
-} // namespace
+bool is_default_root(const PageId& page) {
+    return !page.image.live && page.depth == 0;
+}
+}  // namespace
 
 PagePool::PagePool(int pages_per_side)
     : pages_per_side_(pages_per_side), places_(size_t(pages_per_side) * size_t(pages_per_side)) {
@@ -84,7 +86,8 @@ std::vector<int> PagePool::retirable(uint64_t frame) const {
     std::vector<int> found;
     for (int i = 0; i < place_count(); ++i) {
         const Place& p = places_[size_t(i)];
-        if (p.state == State::usable && !p.pinned && p.last_requested + kAgeFrames <= frame) found.push_back(i);
+        if (p.state == State::usable && !p.pinned && p.last_requested + kAgeFrames <= frame)
+            found.push_back(i);
     }
     std::sort(found.begin(), found.end(), [&](int a, int b) {
         const uint64_t age_a = places_[size_t(a)].last_requested, age_b = places_[size_t(b)].last_requested;
@@ -98,4 +101,4 @@ void PagePool::mark_dirty(int index, const TexelRect& rect) {
     if (p.state != State::free) p.dirty = united(p.dirty, rect);
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,13 +1,16 @@
 // The places of the physical texture and what is in them.
 //
-//   free ──take──▶ composed ──next frame──▶ usable ──retire──▶ resting ──take, after 3 frames──▶ composed (another page)
+//   free ──take──▶ composed ──next frame──▶ usable ──retire──▶ resting ──take, after 3 frames──▶ composed
+//   (another page)
 //                                             ▲                   │
 //                                             └─────revive────────┘ requested again, still clean
 //
 // Invariants
 //  1. A page is in at most one place, a place holds at most one page.
-//  2. A page is in its quad tree exactly while its place is usable; it becomes usable in the frame after it was composed.
-//  3. A place is not taken until kRestFrames frames after its page left the tree: no frame in flight reads a page that
+//  2. A page is in its quad tree exactly while its place is usable; it becomes usable in the frame after it
+//  was composed.
+//  3. A place is not taken until kRestFrames frames after its page left the tree: no frame in flight reads a
+//  page that
 //     is being replaced.
 //  4. Of the places that may be taken, the one whose page was requested longest ago is taken first.
 //  5. Pinned places (the default root, roots of live sectors) are never retired.
@@ -28,7 +31,7 @@ namespace loam {
 class PagePool {
   public:
     static constexpr int kRestFrames = 3;
-    static constexpr int kAgeFrames = 3; // a page not requested for this long may be retired
+    static constexpr int kAgeFrames = 3;  // a page not requested for this long may be retired
 
     enum class State : uint8_t { free, composed, usable, resting };
     struct Place {
@@ -36,8 +39,8 @@ class PagePool {
         State state = State::free;
         bool pinned = false;
         uint64_t last_requested = 0;
-        uint64_t changed = 0; // frame of the last change of state
-        TexelRect dirty;      // of the page with border
+        uint64_t changed = 0;  // frame of the last change of state
+        TexelRect dirty;       // of the page with border
     };
 
     // Place 0 is kept for the default root.
@@ -47,18 +50,19 @@ class PagePool {
     [[nodiscard]] int used_count() const { return int(by_page_.size()); }
     [[nodiscard]] int pages_per_side() const { return pages_per_side_; }
     [[nodiscard]] const Place& place(int index) const { return places_[size_t(index)]; }
-    [[nodiscard]] int find(const PageId& page) const; // -1: absent
+    [[nodiscard]] int find(const PageId& page) const;  // -1: absent
 
-    void touch(int index, uint64_t frame); // requested in this frame
+    void touch(int index, uint64_t frame);  // requested in this frame
     void pin(int index, bool pinned) { places_[size_t(index)].pinned = pinned; }
-    // A place for a page that is absent; -1 when every place is in use or resting. Its page before is forgotten.
+    // A place for a page that is absent; -1 when every place is in use or resting. Its page before is
+    // forgotten.
     int take(const PageId& page, uint64_t frame);
     // The place of the page that `take` would choose is available now.
     [[nodiscard]] int takeable_count(uint64_t frame) const;
     // Pages composed in an earlier frame become usable; `visit` puts them into the trees.
     void promote(uint64_t frame, const std::function<void(int index)>& visit);
     void retire(int index, uint64_t frame);
-    void revive(int index, uint64_t frame); // resting and clean
+    void revive(int index, uint64_t frame);  // resting and clean
     // Usable places, unpinned, not requested for kAgeFrames, oldest first.
     [[nodiscard]] std::vector<int> retirable(uint64_t frame) const;
 
@@ -71,4 +75,4 @@ class PagePool {
     std::unordered_map<PageId, int, PageIdHash> by_page_;
 };
 
-} // namespace loam
+}  // namespace loam

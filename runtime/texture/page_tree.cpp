@@ -30,14 +30,15 @@ uint32_t PageTree::cell(int x, int y) const {
 void PageTree::touch_all() {
     for (Node& n : nodes_) n.changed = n.below_changed = true;
     const size_t finest = index(log2_width_, 0, 0);
-    for (size_t i = finest; i < nodes_.size(); ++i) nodes_[i].below_changed = false; // nothing is below
+    for (size_t i = finest; i < nodes_.size(); ++i) nodes_[i].below_changed = false;  // nothing is below
 }
 
 void PageTree::take_fills(glm::ivec2 origin, std::vector<shared::IndirectionFill>& out) {
     if (changed()) visit(0, 0, 0, kNoPage, false, origin, out);
 }
 
-// A square is written when all of it shows one page and that may have changed; otherwise its quarters are looked at.
+// A square is written when all of it shows one page and that may have changed; otherwise its quarters are
+// looked at.
 void PageTree::visit(int depth, int x, int y, uint32_t inherited, bool inherited_changed, glm::ivec2 origin,
                      std::vector<shared::IndirectionFill>& out) {
     Node& here = node(depth, x, y);
@@ -57,7 +58,8 @@ void PageTree::visit(int depth, int x, int y, uint32_t inherited, bool inherited
         }
         return;
     }
-    for (int i = 0; i < 4; ++i) visit(depth + 1, x * 2 + (i & 1), y * 2 + (i >> 1), shown, changed, origin, out);
+    for (int i = 0; i < 4; ++i)
+        visit(depth + 1, x * 2 + (i & 1), y * 2 + (i >> 1), shown, changed, origin, out);
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,7 +1,8 @@
 // The quad tree of one virtual image: which pages the GPU may use, and what each finest cell therefore shows.
-// A node holds the indirection texel of its page or nothing; a cell shows the finest page above it. What changed since the last
-// `take_fills` comes out as squares, disjoint by construction, so that a compute shader may write them in any order.
-// Source: Call of Duty talk, "Virtual Image Quad Tree", "Indirection Texture".
+// A node holds the indirection texel of its page or nothing; a cell shows the finest page above it. What
+// changed since the last `take_fills` comes out as squares, disjoint by construction, so that a compute
+// shader may write them in any order. Source: Call of Duty talk, "Virtual Image Quad Tree", "Indirection
+// Texture".
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,8 @@ class PageTree {
     explicit PageTree(int log2_width);
 
     [[nodiscard]] int log2_width() const { return log2_width_; }
-    // kNoPage takes the page out. Nodes of any depth may come and go in any order: holes show the nearest ancestor.
+    // kNoPage takes the page out. Nodes of any depth may come and go in any order: holes show the nearest
+    // ancestor.
     void set(int depth, int x, int y, uint32_t texel);
     [[nodiscard]] uint32_t at(int depth, int x, int y) const { return node(depth, x, y).texel; }
     // What a finest cell shows; kNoPage when nothing above it is there.
@@ -34,9 +36,9 @@ class PageTree {
   private:
     struct Node {
         uint32_t texel = kNoPage;
-        uint32_t below = 0;         // pages in the subtree without the node itself
-        bool changed = false;       // the node's own texel
-        bool below_changed = false; // something in the subtree
+        uint32_t below = 0;          // pages in the subtree without the node itself
+        bool changed = false;        // the node's own texel
+        bool below_changed = false;  // something in the subtree
     };
     [[nodiscard]] size_t index(int depth, int x, int y) const {
         // Levels before it hold (4^depth - 1) / 3 nodes.
@@ -52,4 +54,4 @@ class PageTree {
     std::vector<Node> nodes_;
 };
 
-} // namespace loam
+}  // namespace loam

@@ -13,17 +13,19 @@ double distance_m(glm::ivec2 sector, glm::dvec2 from_m) {
                            (sector.y + 1) * kSectorSize_m};
     return square.distance(from_m.x, from_m.y);
 }
-} // namespace
+}  // namespace
 
 SectorSet::SectorSet(const SectorSetDesc& desc)
     : desc_(desc), default_tree_(desc.layout.default_log2_width), allocator_(desc.indirection_log2_size) {
     const auto origin = allocator_.allocate(desc.layout.default_log2_width);
-    LOAM_CHECK(origin && *origin == glm::ivec2(0), "the default sector's image does not fit the indirection texture");
+    LOAM_CHECK(origin && *origin == glm::ivec2(0),
+               "the default sector's image does not fit the indirection texture");
     default_tree_.touch_all();
 }
 
 LiveSector* SectorSet::find(glm::ivec2 sector) {
-    const auto it = std::find_if(live_.begin(), live_.end(), [&](const LiveSector& s) { return s.sector == sector; });
+    const auto it =
+        std::find_if(live_.begin(), live_.end(), [&](const LiveSector& s) { return s.sector == sector; });
     return it == live_.end() ? nullptr : &*it;
 }
 
@@ -66,7 +68,8 @@ bool SectorSet::add(glm::ivec2 sector, uint64_t frame) {
     for (const LiveSector& s : live_) taken[size_t(s.id)] = true;
     int id = 1;
     while (taken[size_t(id)]) ++id;
-    live_.push_back({sector, id, *origin, frame, false, std::make_unique<PageTree>(desc_.layout.sector_log2_width)});
+    live_.push_back(
+        {sector, id, *origin, frame, false, std::make_unique<PageTree>(desc_.layout.sector_log2_width)});
     live_.back().tree->touch_all();
     return true;
 }
@@ -74,7 +77,8 @@ bool SectorSet::add(glm::ivec2 sector, uint64_t frame) {
 std::vector<ImageId> SectorSet::update(glm::dvec2 camera_m, double radius_m, uint64_t frame) {
     std::vector<ImageId> dropped;
     for (size_t i = live_.size(); i-- > 0;)
-        if (live_[i].last_wanted + kIdleFrames < frame || distance_m(live_[i].sector, camera_m) > radius_m * kLeave)
+        if (live_[i].last_wanted + kIdleFrames < frame ||
+            distance_m(live_[i].sector, camera_m) > radius_m * kLeave)
             drop(i, dropped);
 
     std::vector<Wanted> wanted = std::move(wanted_);
@@ -89,7 +93,9 @@ std::vector<ImageId> SectorSet::update(glm::dvec2 camera_m, double radius_m, uin
         const auto farthest = std::max_element(live_.begin(), live_.end(), [&](const auto& a, const auto& b) {
             return distance_m(a.sector, camera_m) < distance_m(b.sector, camera_m);
         });
-        if (farthest == live_.end() || distance_m(farthest->sector, camera_m) <= distance * kFarther + kSectorSize_m) break;
+        if (farthest == live_.end() ||
+            distance_m(farthest->sector, camera_m) <= distance * kFarther + kSectorSize_m)
+            break;
         drop(size_t(farthest - live_.begin()), dropped);
         if (!add(w.sector, frame)) break;
     }
@@ -101,11 +107,12 @@ void SectorSet::write_table(glm::ivec2 camera_sector, std::span<uint32_t> out) c
     std::fill(out.begin(), out.end(), 0u);
     for (const LiveSector& s : live_) {
         const glm::ivec2 cell = s.sector - camera_sector + kSectorTableSide / 2;
-        const bool inside = cell.x > 0 && cell.y > 0 && cell.x < kSectorTableSide - 1 && cell.y < kSectorTableSide - 1;
+        const bool inside =
+            cell.x > 0 && cell.y > 0 && cell.x < kSectorTableSide - 1 && cell.y < kSectorTableSide - 1;
         if (!s.in_table || !inside) continue;
         out[size_t(cell.y * kSectorTableSide + cell.x)] =
             uint32_t(s.id) | uint32_t(s.origin.x) << 8 | uint32_t(s.origin.y) << 20;
     }
 }
 
-} // namespace loam
+}  // namespace loam

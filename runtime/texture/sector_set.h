@@ -1,10 +1,11 @@
 // Which sectors are live, their ids and places in the indirection texture.
 //
-// A sector is wanted when feedback sees it through a default page that is too coarse. It becomes live when it is inside the live radius
-// and there is an id, a place and room under the limit; a nearer sector drives out the farthest one only when that is
-// kFarther times as far away. It stops being live when nobody wanted or saw it for kIdleFrames, or beyond kLeave times the
-// radius. When all is full, farther sectors stay on the default image: coarser, never wrong.
-// Source: Call of Duty talk, "Adaptive Virtual Texture", "Virtual Image". Differs: images of one size, no resizing.
+// A sector is wanted when feedback sees it through a default page that is too coarse. It becomes live when it
+// is inside the live radius and there is an id, a place and room under the limit; a nearer sector drives out
+// the farthest one only when that is kFarther times as far away. It stops being live when nobody wanted or
+// saw it for kIdleFrames, or beyond kLeave times the radius. When all is full, farther sectors stay on the
+// default image: coarser, never wrong. Source: Call of Duty talk, "Adaptive Virtual Texture", "Virtual
+// Image". Differs: images of one size, no resizing.
 #pragma once
 
 #include <cstdint>
@@ -22,10 +23,10 @@ namespace loam {
 
 struct LiveSector {
     glm::ivec2 sector{0};
-    int id = 0; // 1 … 255
-    glm::ivec2 origin{0}; // in the indirection texture
+    int id = 0;            // 1 … 255
+    glm::ivec2 origin{0};  // in the indirection texture
     uint64_t last_wanted = 0;
-    bool in_table = false; // its root page is usable: shaders look at it
+    bool in_table = false;  // its root page is usable: shaders look at it
     std::unique_ptr<PageTree> tree;
     [[nodiscard]] ImageId image() const { return {true, sector.x, sector.y}; }
 };
@@ -49,7 +50,7 @@ class SectorSet {
     [[nodiscard]] std::vector<LiveSector>& live() { return live_; }
     [[nodiscard]] const std::vector<LiveSector>& live() const { return live_; }
     [[nodiscard]] LiveSector* find(glm::ivec2 sector);
-    [[nodiscard]] PageTree* tree_of(const ImageId& image); // null: not live
+    [[nodiscard]] PageTree* tree_of(const ImageId& image);  // null: not live
     [[nodiscard]] FeedbackImages images() const;
 
     void want(glm::ivec2 sector, uint64_t frame);
@@ -74,4 +75,4 @@ class SectorSet {
     std::vector<Wanted> wanted_;
 };
 
-} // namespace loam
+}  // namespace loam

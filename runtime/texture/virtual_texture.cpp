@@ -14,7 +14,8 @@ namespace loam {
 namespace {
 
 using gpu::Access;
-constexpr float kAnisotropy = 0.5f; // between the long axis (0: blurry) and the short one (1: aliased), as the talk's mipBias
+constexpr float kAnisotropy =
+    0.5f;  // between the long axis (0: blurry) and the short one (1: aliased), as the talk's mipBias
 constexpr uint32_t kFeedbackValues = kFeedbackWidth * kFeedbackHeight;
 
 template <typename T>
@@ -25,10 +26,11 @@ Status assign(T& target, Result<T> made) {
 }
 
 Result<gpu::Buffer> storage_buffer(gpu::Device& device, const char* name, uint64_t bytes) {
-    return gpu::Buffer::create(device, {.name = name, .size_bytes = bytes, .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+    return gpu::Buffer::create(
+        device, {.name = name, .size_bytes = bytes, .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
 }
 
-} // namespace
+}  // namespace
 
 VirtualTexture::VirtualTexture() = default;
 VirtualTexture::~VirtualTexture() = default;
@@ -37,52 +39,60 @@ Status VirtualTexture::Impl::make_resources() {
     Impl& t = *this;
     const uint32_t side = uint32_t(t.desc.pages_per_side);
     LOAM_TRY(assign(t.atlas, make_page_atlas(t.device, t.desc.format, side, side)));
-    LOAM_TRY(assign(t.indirection,
-                    gpu::Image::create(t.device, {.name = "indirection",
-                                                  .format = VK_FORMAT_R32_UINT,
-                                                  .width = uint32_t(t.desc.indirection_size),
-                                                  .height = uint32_t(t.desc.indirection_size),
-                                                  .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                                                           VK_IMAGE_USAGE_TRANSFER_SRC_BIT})));
-    LOAM_TRY(assign(t.sector_table, storage_buffer(t.device, "sector table", kSectorTableSide * kSectorTableSide * 4)));
+    LOAM_TRY(assign(t.indirection, gpu::Image::create(t.device, {.name = "indirection",
+                                                                 .format = VK_FORMAT_R32_UINT,
+                                                                 .width = uint32_t(t.desc.indirection_size),
+                                                                 .height = uint32_t(t.desc.indirection_size),
+                                                                 .usage = VK_IMAGE_USAGE_STORAGE_BIT |
+                                                                          VK_IMAGE_USAGE_SAMPLED_BIT |
+                                                                          VK_IMAGE_USAGE_TRANSFER_SRC_BIT})));
+    LOAM_TRY(assign(t.sector_table,
+                    storage_buffer(t.device, "sector table", kSectorTableSide * kSectorTableSide * 4)));
     LOAM_TRY(assign(t.params, storage_buffer(t.device, "texture params", sizeof(shared::VtParams))));
-    LOAM_TRY(assign(t.direct_params, storage_buffer(t.device, "direct params", sizeof(shared::DirectParams))));
-    LOAM_TRY(assign(t.direct_places,
-                    storage_buffer(t.device, "direct places", size_t(t.layers.count) * sizeof(shared::LayerPlace))));
+    LOAM_TRY(
+        assign(t.direct_params, storage_buffer(t.device, "direct params", sizeof(shared::DirectParams))));
+    LOAM_TRY(assign(t.direct_places, storage_buffer(t.device, "direct places",
+                                                    size_t(t.layers.count) * sizeof(shared::LayerPlace))));
     LOAM_TRY(assign(t.feedback, storage_buffer(t.device, "feedback", kFeedbackValues * 4)));
     LOAM_TRY(assign(t.linear, gpu::Sampler::create(t.device, {})));
     LOAM_TRY(assign(t.nearest, gpu::Sampler::create(t.device, {.filter = VK_FILTER_NEAREST})));
-    LOAM_TRY(assign(t.fill_pipeline, gpu::Pipeline::create(t.device, gpu::ComputeDesc{
-                                                                         .name = "indirection",
-                                                                         .shader = "texture/indirection.comp",
-                                                                         .bindings = {gpu::storage_image(0), gpu::storage_buffer(1)},
-                                                                         .constants = {}})));
+    LOAM_TRY(assign(t.fill_pipeline,
+                    gpu::Pipeline::create(t.device, gpu::ComputeDesc{.name = "indirection",
+                                                                     .shader = "texture/indirection.comp",
+                                                                     .bindings = {gpu::storage_image(0),
+                                                                                  gpu::storage_buffer(1)},
+                                                                     .constants = {}})));
     return assign(t.feedback_pipeline,
-                  gpu::Pipeline::create(t.device, gpu::ComputeDesc{.name = "feedback",
-                                                                   .shader = "texture/feedback.comp",
-                                                                   .bindings = {gpu::storage_buffer(0), gpu::storage_buffer(1),
-                                                                                gpu::sampled_image(2), gpu::sampled_image(3),
-                                                                                gpu::storage_buffer(4), gpu::storage_buffer(5)},
-                                                                   .constants = {}}));
+                  gpu::Pipeline::create(
+                      t.device, gpu::ComputeDesc{.name = "feedback",
+                                                 .shader = "texture/feedback.comp",
+                                                 .bindings = {gpu::storage_buffer(0), gpu::storage_buffer(1),
+                                                              gpu::sampled_image(2), gpu::sampled_image(3),
+                                                              gpu::storage_buffer(4), gpu::storage_buffer(5)},
+                                                 .constants = {}}));
 }
 
-Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& device, const Document& document, IndexMap& index,
-                                                               LayerSet& layers, const VirtualTextureDesc& asked) {
+Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& device, const Document& document,
+                                                               IndexMap& index, LayerSet& layers,
+                                                               const VirtualTextureDesc& asked) {
     VirtualTextureDesc desc = asked;
     if (desc.pages_per_side < 2 || desc.pages_per_side > 64)
         return error("the physical texture is 2 to 64 pages wide, not {}", desc.pages_per_side);
     if (!std::has_single_bit(uint32_t(desc.indirection_size)) || desc.indirection_size > 4096)
-        return error("the indirection texture's side is a power of two up to 4096, not {}", desc.indirection_size);
+        return error("the indirection texture's side is a power of two up to 4096, not {}",
+                     desc.indirection_size);
     if (desc.format == PageFormat::bc1x3 && !device.caps().bc) desc.format = PageFormat::rgba8;
     const TextureLayout layout = texture_layout(document.bounds(), desc.sector_log2_width);
     const int log2_size = std::countr_zero(uint32_t(desc.indirection_size));
     if (log2_size < layout.default_log2_width || log2_size < desc.sector_log2_width)
-        return error("an indirection texture of {} texels cannot hold images of {} and {} pages", desc.indirection_size,
-                     1 << layout.default_log2_width, 1 << desc.sector_log2_width);
+        return error("an indirection texture of {} texels cannot hold images of {} and {} pages",
+                     desc.indirection_size, 1 << layout.default_log2_width, 1 << desc.sector_log2_width);
     std::unique_ptr<VirtualTexture> texture(new VirtualTexture);
-    texture->impl_ = std::make_unique<Impl>(
-        device, document, index, layers, desc, layout,
-        SectorSetDesc{.layout = layout, .indirection_log2_size = log2_size, .max_live = desc.max_live_sectors, .bounds = document.bounds()});
+    texture->impl_ = std::make_unique<Impl>(device, document, index, layers, desc, layout,
+                                            SectorSetDesc{.layout = layout,
+                                                          .indirection_log2_size = log2_size,
+                                                          .max_live = desc.max_live_sectors,
+                                                          .bounds = document.bounds()});
     LOAM_TRY(texture->impl_->make_resources());
     auto composer = Composer::create(device, document, index, layers, layout, desc.format, desc.decals);
     if (!composer.ok()) return composer.error();
@@ -101,7 +111,8 @@ void VirtualTexture::Impl::cmd_indirection(gpu::FrameRing& ring, gpu::Commands& 
     std::vector<shared::IndirectionFill> cut;
     for (const auto& f : fills)
         for (int y = 0; y < f.size; y += kLargest)
-            for (int x = 0; x < f.size; x += kLargest) cut.push_back({f.x + x, f.y + y, std::min(f.size, kLargest), f.value});
+            for (int x = 0; x < f.size; x += kLargest)
+                cut.push_back({f.x + x, f.y + y, std::min(f.size, kLargest), f.value});
     const uint64_t bytes = cut.size() * sizeof(shared::IndirectionFill);
     const gpu::UploadSlice slice = ring.upload(bytes);
     std::memcpy(slice.data, cut.data(), bytes);
@@ -142,13 +153,17 @@ void VirtualTexture::Impl::cmd_parameters(gpu::Commands& commands, const Texture
         d.levels[level] = {int(map.level_offset(level)), map.pages_x(level), map.pages_y(level), 0};
     std::vector<shared::LayerPlace> places;
     for (const double tile_m : layers.tiles_m)
-        places.push_back(Composer::layer_place(camera.sector.x * kSectorSize_m, camera.sector.y * kSectorSize_m, 1.0, 1.0, tile_m,
+        places.push_back(Composer::layer_place(camera.sector.x * kSectorSize_m,
+                                               camera.sector.y * kSectorSize_m, 1.0, 1.0, tile_m,
                                                layers.size_texels));
 
-    commands.use({{params, Access::copy_target}, {direct_params, Access::copy_target}, {direct_places, Access::copy_target}});
+    commands.use({{params, Access::copy_target},
+                  {direct_params, Access::copy_target},
+                  {direct_places, Access::copy_target}});
     vkCmdUpdateBuffer(commands.handle(), params.handle(), 0, sizeof p, &p);
     vkCmdUpdateBuffer(commands.handle(), direct_params.handle(), 0, sizeof d, &d);
-    vkCmdUpdateBuffer(commands.handle(), direct_places.handle(), 0, places.size() * sizeof places[0], places.data());
+    vkCmdUpdateBuffer(commands.handle(), direct_places.handle(), 0, places.size() * sizeof places[0],
+                      places.data());
     if (!table_changed && camera.sector == table_sector) return;
     if (table_changed) changed_frame = frame;
     table_changed = false;
@@ -156,7 +171,8 @@ void VirtualTexture::Impl::cmd_parameters(gpu::Commands& commands, const Texture
     std::vector<uint32_t> table(size_t(kSectorTableSide) * kSectorTableSide);
     sectors.write_table(camera.sector, table);
     commands.use({{sector_table, Access::copy_target}});
-    vkCmdUpdateBuffer(commands.handle(), sector_table.handle(), 0, table.size() * sizeof table[0], table.data());
+    vkCmdUpdateBuffer(commands.handle(), sector_table.handle(), 0, table.size() * sizeof table[0],
+                      table.data());
 }
 
 Status VirtualTexture::update(gpu::FrameRing& ring, gpu::Commands& commands, const TextureView& view) {
@@ -176,8 +192,9 @@ Status VirtualTexture::update(gpu::FrameRing& ring, gpu::Commands& commands, con
     return {};
 }
 
-Status VirtualTexture::record_feedback(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& depth, gpu::Image& gbuffer,
-                                       const gpu::Buffer& frame_uniforms, uint64_t uniforms_offset) {
+Status VirtualTexture::record_feedback(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& depth,
+                                       gpu::Image& gbuffer, const gpu::Buffer& frame_uniforms,
+                                       uint64_t uniforms_offset) {
     Impl& t = *impl_;
     {
         auto pass = commands.pass("texture feedback", {{depth, Access::depth_sampled},
@@ -186,12 +203,13 @@ Status VirtualTexture::record_feedback(gpu::FrameRing& ring, gpu::Commands& comm
                                                        {t.sector_table, Access::compute_sampled},
                                                        {t.feedback, Access::compute_storage}});
         const VkImageView depth_view = depth.depth_view() ? depth.depth_view() : depth.view();
-        commands.bind(t.feedback_pipeline, {{0, t.params},
-                                            {1, t.sector_table},
-                                            {2, depth_view, t.nearest, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL},
-                                            {3, gbuffer.view(), t.nearest},
-                                            {4, frame_uniforms, uniforms_offset, VK_WHOLE_SIZE},
-                                            {5, t.feedback}});
+        commands.bind(t.feedback_pipeline,
+                      {{0, t.params},
+                       {1, t.sector_table},
+                       {2, depth_view, t.nearest, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL},
+                       {3, gbuffer.view(), t.nearest},
+                       {4, frame_uniforms, uniforms_offset, VK_WHOLE_SIZE},
+                       {5, t.feedback}});
         commands.dispatch(kFeedbackWidth / 8, kFeedbackHeight / 8);
     }
     ring.read_back(commands, t.feedback, 0, kFeedbackValues * 4,
@@ -207,20 +225,41 @@ Status VirtualTexture::record_feedback(gpu::FrameRing& ring, gpu::Commands& comm
     return {};
 }
 
-gpu::Image& VirtualTexture::atlas(int which) { return impl_->atlas[size_t(which)]; }
-gpu::Image& VirtualTexture::indirection() { return impl_->indirection; }
-gpu::Buffer& VirtualTexture::sector_table() { return impl_->sector_table; }
-gpu::Buffer& VirtualTexture::params() { return impl_->params; }
-gpu::Buffer& VirtualTexture::direct_params() { return impl_->direct_params; }
-gpu::Buffer& VirtualTexture::direct_places() { return impl_->direct_places; }
-const gpu::Sampler& VirtualTexture::sampler() const { return impl_->linear; }
-const gpu::Sampler& VirtualTexture::nearest_sampler() const { return impl_->nearest; }
-const TextureLayout& VirtualTexture::layout() const { return impl_->layout; }
-uint64_t VirtualTexture::last_feedback_frame() const { return impl_->feedback_view_frame; }
+gpu::Image& VirtualTexture::atlas(int which) {
+    return impl_->atlas[size_t(which)];
+}
+gpu::Image& VirtualTexture::indirection() {
+    return impl_->indirection;
+}
+gpu::Buffer& VirtualTexture::sector_table() {
+    return impl_->sector_table;
+}
+gpu::Buffer& VirtualTexture::params() {
+    return impl_->params;
+}
+gpu::Buffer& VirtualTexture::direct_params() {
+    return impl_->direct_params;
+}
+gpu::Buffer& VirtualTexture::direct_places() {
+    return impl_->direct_places;
+}
+const gpu::Sampler& VirtualTexture::sampler() const {
+    return impl_->linear;
+}
+const gpu::Sampler& VirtualTexture::nearest_sampler() const {
+    return impl_->nearest;
+}
+const TextureLayout& VirtualTexture::layout() const {
+    return impl_->layout;
+}
+uint64_t VirtualTexture::last_feedback_frame() const {
+    return impl_->feedback_view_frame;
+}
 
 bool VirtualTexture::settled() const {
     const Impl& t = *impl_;
-    return t.frame > 0 && t.missing.empty() && !t.has_dirt() && t.feedback_frame >= t.changed_frame && !t.inbox->fresh;
+    return t.frame > 0 && t.missing.empty() && !t.has_dirt() && t.feedback_frame >= t.changed_frame &&
+           !t.inbox->fresh;
 }
 
 int VirtualTexture::place_of(const PageId& page) const {
@@ -237,7 +276,8 @@ VirtualTexture::Statistics VirtualTexture::statistics() const {
     s.requested_pages = uint32_t(t.requests.size());
     s.missing_pages = uint32_t(t.missing.size());
     s.dirty_pages = uint32_t(t.dirty_order.size());
-    s.gpu_bytes = t.indirection.bytes() + t.composer->gpu_bytes() + t.sector_table.size_bytes() + t.feedback.size_bytes();
+    s.gpu_bytes = t.indirection.bytes() + t.composer->gpu_bytes() + t.sector_table.size_bytes() +
+                  t.feedback.size_bytes();
     for (const gpu::Image& image : t.atlas) s.gpu_bytes += image.bytes();
     return s;
 }
@@ -249,11 +289,12 @@ std::vector<uint32_t> VirtualTexture::expected_indirection() const {
     const auto write = [&](const PageTree& tree, glm::ivec2 origin) {
         const int side = 1 << tree.log2_width();
         for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side; ++x) texels[size_t(origin.y + y) * size_t(size) + size_t(origin.x + x)] = tree.cell(x, y);
+            for (int x = 0; x < side; ++x)
+                texels[size_t(origin.y + y) * size_t(size) + size_t(origin.x + x)] = tree.cell(x, y);
     };
     write(t.sectors.default_tree(), {0, 0});
     for (const LiveSector& sector : t.sectors.live()) write(*sector.tree, sector.origin);
     return texels;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,7 +1,7 @@
 // The adaptive virtual texture: sectors, virtual images with their page quad trees, the indirection texture,
-// feedback, composition and compression. Pages are usable the frame after they were composed and rest three frames
-// before their place is used again.
-// Source: Call of Duty talk, from "Virtual Texture" to "Scalability".
+// feedback, composition and compression. Pages are usable the frame after they were composed and rest three
+// frames before their place is used again. Source: Call of Duty talk, from "Virtual Texture" to
+// "Scalability".
 #pragma once
 
 #include <functional>
@@ -19,84 +19,94 @@
 
 namespace loam {
 
-enum class PageFormat { bc1x3, rgba8 }; // three BC1 textures, or three RGBA8 (the uncompressed comparison, fast on software devices)
+enum class PageFormat {
+    bc1x3,
+    rgba8
+};  // three BC1 textures, or three RGBA8 (the uncompressed comparison, fast on software devices)
 
-inline constexpr uint32_t kUnusedIndirection = 0xfffffffeu; // of expected_indirection
+inline constexpr uint32_t kUnusedIndirection = 0xfffffffeu;  // of expected_indirection
 
 struct VirtualTextureDesc {
     int pages_per_side = 22;      // physical texture: very low 13, low 16, mid 22, high 30, ultra 42
     int indirection_size = 1024;  // texels a side
     PageFormat format = PageFormat::bc1x3;
-    int sector_log2_width = 6;    // live sectors' images are 64x64 pages
+    int sector_log2_width = 6;  // live sectors' images are 64x64 pages
     int max_live_sectors = 64;
-    int budget_pages = 2;         // whole pages composed a frame
+    int budget_pages = 2;  // whole pages composed a frame
     bool decals = true;
 };
 
 struct TextureView {
     glm::dvec3 camera_m{0};
-    double pixels_per_radian = 500; // picture height / (2 tan(fov_y / 2)): sizes the live radius
+    double pixels_per_radian = 500;  // picture height / (2 tan(fov_y / 2)): sizes the live radius
     uint64_t frame = 0;
     float mip_bias = 0;
-    int budget_pages = -1; // overrides VirtualTextureDesc::budget_pages when >= 0
+    int budget_pages = -1;  // overrides VirtualTextureDesc::budget_pages when >= 0
 };
 
 class VirtualTexture {
   public:
-    static Result<std::unique_ptr<VirtualTexture>> create(gpu::Device& device, const Document& document, IndexMap& index,
-                                                          LayerSet& layers, const VirtualTextureDesc& desc);
+    static Result<std::unique_ptr<VirtualTexture>> create(gpu::Device& device, const Document& document,
+                                                          IndexMap& index, LayerSet& layers,
+                                                          const VirtualTextureDesc& desc);
     ~VirtualTexture();
 
-    // World rectangles whose texels change: decals, and index dirt grown by one index spacing of level 0 (its filter). What
-    // coarser levels need beyond that is added here.
+    // World rectangles whose texels change: decals, and index dirt grown by one index spacing of level 0 (its
+    // filter). What coarser levels need beyond that is added here.
     void on_dirt(std::span<const WorldRect> rects);
     // Index dirt as the document tells it: grows it and calls on_dirt.
     void on_index_dirt(std::span<const WorldRect> rects);
     // Pages wanted beside the feedback's, until the next call (places the camera will jump to; tests).
     void request_pages(std::span<const PageId> pages);
 
-    // Takes in feedback, chooses what to compose and requests the index pages for it; call before IndexMap::update.
+    // Takes in feedback, chooses what to compose and requests the index pages for it; call before
+    // IndexMap::update.
     void request_inputs(const TextureView& view);
-    // Makes last frame's pages usable, applies feedback, composes dirty rectangles first, then missing pages within the
-    // budget, and updates indirection and sector table.
+    // Makes last frame's pages usable, applies feedback, composes dirty rectangles first, then missing pages
+    // within the budget, and updates indirection and sector table.
     Status update(gpu::FrameRing& ring, gpu::Commands& commands, const TextureView& view);
     // After the prepass: 240x136 wanted pages, read back when the GPU has passed this frame.
-    // depth: the prepass' depth (Access::depth_sampled), gbuffer: normal.xy, log2 footprints (see frame_io.h).
-    Status record_feedback(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& depth, gpu::Image& gbuffer,
-                           const gpu::Buffer& frame_uniforms, uint64_t uniforms_offset);
+    // depth: the prepass' depth (Access::depth_sampled), gbuffer: normal.xy, log2 footprints (see
+    // frame_io.h).
+    Status record_feedback(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& depth,
+                           gpu::Image& gbuffer, const gpu::Buffer& frame_uniforms, uint64_t uniforms_offset);
 
     // --- for shaders that include shaders/texture/vt_sample.glsl (its head says which slots) ---
-    [[nodiscard]] gpu::Image& atlas(int which); // 0 albedo, 1 gloss+normal x+occlusion, 2 metalness+normal y+feature
-    [[nodiscard]] gpu::Image& indirection();    // R32_UINT
+    [[nodiscard]] gpu::Image& atlas(
+        int which);  // 0 albedo, 1 gloss+normal x+occlusion, 2 metalness+normal y+feature
+    [[nodiscard]] gpu::Image& indirection();  // R32_UINT
     [[nodiscard]] gpu::Buffer& sector_table();
-    [[nodiscard]] gpu::Buffer& params();        // VtParams of this frame
+    [[nodiscard]] gpu::Buffer& params();  // VtParams of this frame
     [[nodiscard]] const gpu::Sampler& sampler() const;
-    [[nodiscard]] const gpu::Sampler& nearest_sampler() const; // of integer images
+    [[nodiscard]] const gpu::Sampler& nearest_sampler() const;  // of integer images
     // For shaders/texture/direct.glsl.
-    [[nodiscard]] gpu::Buffer& direct_params(); // DirectParams of this frame
-    [[nodiscard]] gpu::Buffer& direct_places(); // LayerPlace a layer, relative to the camera's sector
+    [[nodiscard]] gpu::Buffer& direct_params();  // DirectParams of this frame
+    [[nodiscard]] gpu::Buffer& direct_places();  // LayerPlace a layer, relative to the camera's sector
 
-    // Nothing dirty, nothing missing, and a feedback of a frame rendered after the last change wanted nothing that is missing.
-    // It speaks of the views rendered so far: after moving or turning the camera wait until last_feedback_frame() reaches
-    // the TextureView::frame of the new view.
+    // Nothing dirty, nothing missing, and a feedback of a frame rendered after the last change wanted nothing
+    // that is missing. It speaks of the views rendered so far: after moving or turning the camera wait until
+    // last_feedback_frame() reaches the TextureView::frame of the new view.
     [[nodiscard]] bool settled() const;
     [[nodiscard]] uint64_t last_feedback_frame() const;
     struct Statistics {
-        uint32_t resident_pages = 0, capacity_pages = 0, live_sectors = 0, requested_pages = 0, missing_pages = 0;
+        uint32_t resident_pages = 0, capacity_pages = 0, live_sectors = 0, requested_pages = 0,
+                 missing_pages = 0;
         uint32_t dirty_pages = 0;
-        uint64_t pages_dirtied = 0, pages_composed = 0, rects_composed = 0, texels_composed = 0; // since start
+        uint64_t pages_dirtied = 0, pages_composed = 0, rects_composed = 0,
+                 texels_composed = 0;  // since start
         uint64_t gpu_bytes = 0;
     };
     [[nodiscard]] Statistics statistics() const;
 
-    // Tests: every resident page composed again from nothing into scratch and compared with what is in the atlas.
-    // Returns the number of pages that differ in any byte (all mips, all three textures).
+    // Tests: every resident page composed again from nothing into scratch and compared with what is in the
+    // atlas. Returns the number of pages that differ in any byte (all mips, all three textures).
     Result<uint32_t> count_stale_pages(gpu::FrameRing& ring);
-    // Tests: what the CPU's quad trees say the indirection texture holds, row by row; places outside all images are
-    // kUnusedIndirection.
+    // Tests: what the CPU's quad trees say the indirection texture holds, row by row; places outside all
+    // images are kUnusedIndirection.
     [[nodiscard]] std::vector<uint32_t> expected_indirection() const;
     [[nodiscard]] const TextureLayout& layout() const;
-    [[nodiscard]] int place_of(const PageId& page) const; // physical page y * pages a side + x, if usable; else -1
+    [[nodiscard]] int place_of(
+        const PageId& page) const;  // physical page y * pages a side + x, if usable; else -1
 
   private:
     VirtualTexture();
@@ -104,4 +114,4 @@ class VirtualTexture {
     std::unique_ptr<Impl> impl_;
 };
 
-} // namespace loam
+}  // namespace loam

@@ -1,4 +1,5 @@
-// The invariant that everything hangs on, looked at directly: a resident page equals the page composed from nothing.
+// The invariant that everything hangs on, looked at directly: a resident page equals the page composed from
+// nothing.
 #include <algorithm>
 #include <cstring>
 
@@ -11,10 +12,11 @@ namespace {
 
 using gpu::Access;
 constexpr uint32_t kPagesX = 4, kPagesY = 2, kPagesAtOnce = kPagesX * kPagesY;
-constexpr int kIndexPatience = 16; // frames to wait for the index pages of a group
+constexpr int kIndexPatience = 16;  // frames to wait for the index pages of a group
 
 // Both mips of a page of one texture, copied to a buffer; returns the bytes written.
-uint64_t cmd_copy_page(gpu::Commands& commands, const gpu::Image& image, glm::ivec2 page, gpu::Buffer& out, uint64_t offset) {
+uint64_t cmd_copy_page(gpu::Commands& commands, const gpu::Image& image, glm::ivec2 page, gpu::Buffer& out,
+                       uint64_t offset) {
     VkBufferImageCopy regions[2] = {};
     uint64_t bytes = 0;
     for (uint32_t mip = 0; mip < 2; ++mip) {
@@ -25,11 +27,12 @@ uint64_t cmd_copy_page(gpu::Commands& commands, const gpu::Image& image, glm::iv
         regions[mip].imageExtent = {side, side, 1};
         bytes += gpu::image_bytes(image.format(), side, side);
     }
-    vkCmdCopyImageToBuffer(commands.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL, out.handle(), 2, regions);
+    vkCmdCopyImageToBuffer(commands.handle(), image.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                           out.handle(), 2, regions);
     return bytes;
 }
 
-} // namespace
+}  // namespace
 
 Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
     Impl& t = *impl_;
@@ -39,7 +42,8 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
     const VkFormat format = fresh[0].format();
     const uint64_t page_bytes = 3 * (gpu::image_bytes(format, kPageTexels, kPageTexels) +
                                      gpu::image_bytes(format, kPageTexels / 2, kPageTexels / 2));
-    auto buffer = gpu::Buffer::create(t.device, {.name = "page comparison", .size_bytes = 2 * page_bytes * kPagesAtOnce});
+    auto buffer = gpu::Buffer::create(
+        t.device, {.name = "page comparison", .size_bytes = 2 * page_bytes * kPagesAtOnce});
     if (!buffer.ok()) return buffer.error();
 
     std::vector<int> places;
@@ -54,7 +58,8 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
             auto frame = ring.begin();
             if (!frame.ok()) return frame.error();
             gpu::Commands& commands = (*frame)->commands;
-            for (size_t i = 0; i < count; ++i) t.index.request(t.index_page(t.pool.place(places[first + i]).page), 1.0e9f);
+            for (size_t i = 0; i < count; ++i)
+                t.index.request(t.index_page(t.pool.place(places[first + i]).page), 1.0e9f);
             LOAM_TRY(t.index.update(ring, commands, ++index_frame, int(kPagesAtOnce)));
             std::vector<ComposeJob> jobs;
             for (size_t i = 0; i < count; ++i) {
@@ -74,14 +79,18 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
                 uint64_t at = 0;
                 for (size_t i = 0; i < count; ++i)
                     for (const bool resident : {true, false}) {
-                        const glm::ivec2 page = resident ? t.make_job(places[first + i], {}).target : jobs[i].target;
+                        const glm::ivec2 page =
+                            resident ? t.make_job(places[first + i], {}).target : jobs[i].target;
                         for (size_t which = 0; which < 3; ++which)
-                            at += cmd_copy_page(commands, resident ? t.atlas[which] : fresh[which], page, *buffer, at);
+                            at += cmd_copy_page(commands, resident ? t.atlas[which] : fresh[which], page,
+                                                *buffer, at);
                     }
-                ring.read_back(commands, *buffer, 0, at, [&stale, count, page_bytes](std::span<const std::byte> bytes) {
-                    for (size_t i = 0; i < count; ++i)
-                        stale += std::memcmp(&bytes[2 * i * page_bytes], &bytes[(2 * i + 1) * page_bytes], page_bytes) != 0;
-                });
+                ring.read_back(
+                    commands, *buffer, 0, at, [&stale, count, page_bytes](std::span<const std::byte> bytes) {
+                        for (size_t i = 0; i < count; ++i)
+                            stale += std::memcmp(&bytes[2 * i * page_bytes], &bytes[(2 * i + 1) * page_bytes],
+                                                 page_bytes) != 0;
+                    });
                 compared = true;
             }
             LOAM_TRY(ring.finish(**frame));
@@ -91,4 +100,4 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
     return stale;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,8 +1,8 @@
 // What the parts of VirtualTexture share. One frame:
 //
-//   advance   (request_inputs)  frame counter; pages of the last frame enter the trees; feedback; live sectors; what is missing
-//   update                      choose jobs whose index page is ready; compose; write indirection, table and parameters
-//   record_feedback             after the prepass
+//   advance   (request_inputs)  frame counter; pages of the last frame enter the trees; feedback; live
+//   sectors; what is missing update                      choose jobs whose index page is ready; compose;
+//   write indirection, table and parameters record_feedback             after the prepass
 #pragma once
 
 #include <memory>
@@ -26,10 +26,18 @@ struct VirtualTexture::Impl {
         uint64_t frame = 0, view_frame = 0;
     };
 
-    Impl(gpu::Device& d, const Document& doc, IndexMap& i, LayerSet& l, const VirtualTextureDesc& s, const TextureLayout& t,
-         const SectorSetDesc& sector_desc)
-        : device(d), document(doc), index(i), layers(l), desc(s), layout(t), pool(s.pages_per_side), sectors(sector_desc),
-          inbox(std::make_shared<Inbox>()), popularity(size_t(pool.place_count()), 0) {}
+    Impl(gpu::Device& d, const Document& doc, IndexMap& i, LayerSet& l, const VirtualTextureDesc& s,
+         const TextureLayout& t, const SectorSetDesc& sector_desc)
+        : device(d),
+          document(doc),
+          index(i),
+          layers(l),
+          desc(s),
+          layout(t),
+          pool(s.pages_per_side),
+          sectors(sector_desc),
+          inbox(std::make_shared<Inbox>()),
+          popularity(size_t(pool.place_count()), 0) {}
 
     // virtual_texture_plan.cpp
     void advance(const TextureView& view);
@@ -68,10 +76,10 @@ struct VirtualTexture::Impl {
     gpu::Sampler linear, nearest;
     gpu::Pipeline fill_pipeline, feedback_pipeline;
 
-    uint64_t frame = 0;         // counts updates
-    uint64_t view_frame = 0;    // TextureView::frame of the newest
-    uint64_t changed_frame = 0; // last update that changed anything a shader sees
-    uint64_t feedback_frame = 0, feedback_view_frame = 0; // of the newest feedback taken in
+    uint64_t frame = 0;                                    // counts updates
+    uint64_t view_frame = 0;                               // TextureView::frame of the newest
+    uint64_t changed_frame = 0;                            // last update that changed anything a shader sees
+    uint64_t feedback_frame = 0, feedback_view_frame = 0;  // of the newest feedback taken in
     bool advanced = false;
     glm::ivec2 table_sector{1 << 30};
     bool table_changed = true;
@@ -85,4 +93,4 @@ struct VirtualTexture::Impl {
     Statistics counted;
 };
 
-} // namespace loam
+}  // namespace loam

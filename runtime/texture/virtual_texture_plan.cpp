@@ -9,12 +9,13 @@ namespace loam {
 
 namespace {
 
-constexpr int64_t kDirtyTexelsPerFrame = 4ll * kPageTexels * kPageTexels; // four whole pages: 10–30 ms on software devices
-constexpr size_t kInputLookahead = 24; // index pages asked for ahead, of missing pages and of dirty ones
+constexpr int64_t kDirtyTexelsPerFrame =
+    4ll * kPageTexels * kPageTexels;    // four whole pages: 10–30 ms on software devices
+constexpr size_t kInputLookahead = 24;  // index pages asked for ahead, of missing pages and of dirty ones
 // A page not wanted for so long, whose parent is, only shows texels too fine for the distance.
 constexpr uint64_t kTooFineFrames = 30;
 
-} // namespace
+}  // namespace
 
 MapPage VirtualTexture::Impl::index_page(const PageId& page) const {
     const WorldRect square = layout.square(page);
@@ -30,7 +31,7 @@ uint32_t VirtualTexture::Impl::indirection_texel(int place) const {
 void VirtualTexture::Impl::enter_tree(int place) {
     const PageId page = pool.place(place).page;
     PageTree* tree = sectors.tree_of(page.image);
-    if (!tree) { // the sector went away while its page was composed
+    if (!tree) {  // the sector went away while its page was composed
         pool.retire(place, frame);
         return;
     }
@@ -62,14 +63,15 @@ void VirtualTexture::Impl::take_feedback() {
     inbox->fresh = false;
     feedback_frame = inbox->frame;
     feedback_view_frame = inbox->view_frame;
-    const FeedbackResult result = analyse_feedback({.values = inbox->values,
-                                                    .images = &inbox->images,
-                                                    .layout = layout,
-                                                    .capacity_pages = uint32_t(pool.place_count()),
-                                                    .is_visible = [this](const PageId& page) {
-                                                        const int place = pool.find(page);
-                                                        return place >= 0 && pool.place(place).state == PagePool::State::usable;
-                                                    }});
+    const FeedbackResult result =
+        analyse_feedback({.values = inbox->values,
+                          .images = &inbox->images,
+                          .layout = layout,
+                          .capacity_pages = uint32_t(pool.place_count()),
+                          .is_visible = [this](const PageId& page) {
+                              const int place = pool.find(page);
+                              return place >= 0 && pool.place(place).state == PagePool::State::usable;
+                          }});
     requests = result.requests;
     for (const PageId& page : result.wants_finer) {
         const int sectors_wide = 1 << layout.default_log2_page;
@@ -84,7 +86,7 @@ void VirtualTexture::Impl::take_feedback() {
 
 void VirtualTexture::Impl::want(const PageRequest& request) {
     PageTree* tree = sectors.tree_of(request.page.image);
-    if (!tree) return; // wanted by a feedback older than the sector's end
+    if (!tree) return;  // wanted by a feedback older than the sector's end
     const int place = pool.find(request.page);
     if (place < 0) {
         if (index.map().exists(index_page(request.page))) missing.push_back(request);
@@ -98,7 +100,8 @@ void VirtualTexture::Impl::want(const PageRequest& request) {
     }
 }
 
-// Everything wanted, most wanted first: the default root, the roots of live sectors, then what feedback and callers ask for.
+// Everything wanted, most wanted first: the default root, the roots of live sectors, then what feedback and
+// callers ask for.
 void VirtualTexture::Impl::gather_missing() {
     missing.clear();
     std::fill(popularity.begin(), popularity.end(), 0u);
@@ -125,7 +128,8 @@ void VirtualTexture::Impl::make_room() {
         const PagePool::Place& p = pool.place(place);
         const int parent = p.page.depth > 0 ? pool.find(p.page.parent()) : -1;
         const bool too_fine = parent >= 0 && pool.place(parent).last_requested == frame &&
-                              pool.place(parent).state == PagePool::State::usable && p.last_requested + kTooFineFrames < frame;
+                              pool.place(parent).state == PagePool::State::usable &&
+                              p.last_requested + kTooFineFrames < frame;
         if (shortage <= 0 && !too_fine) continue;
         leave_tree(place);
         --shortage;
@@ -151,8 +155,10 @@ void VirtualTexture::Impl::advance(const TextureView& view) {
     pool.promote(frame, [this](int place) { enter_tree(place); });
     take_feedback();
     const PageId finest_default{{}, layout.default_log2_width, 0, 0};
-    const double radius_m = layout.texel_m(finest_default) * view.pixels_per_radian * std::exp2(-double(view.mip_bias));
-    for (const ImageId& image : sectors.update({view.camera_m.x, view.camera_m.y}, radius_m, frame)) drop_image(image);
+    const double radius_m =
+        layout.texel_m(finest_default) * view.pixels_per_radian * std::exp2(-double(view.mip_bias));
+    for (const ImageId& image : sectors.update({view.camera_m.x, view.camera_m.y}, radius_m, frame))
+        drop_image(image);
     gather_missing();
     make_room();
     order_dirty();
@@ -161,11 +167,15 @@ void VirtualTexture::Impl::advance(const TextureView& view) {
 ComposeJob VirtualTexture::Impl::make_job(int place, const TexelRect& rect) const {
     const PageId& page = pool.place(place).page;
     const MapPage from = index_page(page);
-    return {page, rect, {place % desc.pages_per_side, place / desc.pages_per_side}, from, index.map().slot_of(from)};
+    return {page,
+            rect,
+            {place % desc.pages_per_side, place / desc.pages_per_side},
+            from,
+            index.map().slot_of(from)};
 }
 
-// A page is composed only from an index page that is there and has no dirt of its own left: what is in the cache is
-// always a function of the document, never of what happened to be resident.
+// A page is composed only from an index page that is there and has no dirt of its own left: what is in the
+// cache is always a function of the document, never of what happened to be resident.
 std::vector<ComposeJob> VirtualTexture::Impl::choose_jobs(const TextureView& view) {
     std::unordered_set<MapPage, MapPageHash> stale;
     index.map().for_each_resident([&](const MapPage& page, int, const TexelRect& dirty) {
@@ -230,7 +240,8 @@ void VirtualTexture::on_dirt(std::span<const WorldRect> rects) {
     for (int i = 0; i < t.pool.place_count(); ++i) {
         const PagePool::Place& place = t.pool.place(i);
         if (place.state == PagePool::State::free) continue;
-        // Coarser index levels filter over wider texels; one texel of that level is about two texels of the page.
+        // Coarser index levels filter over wider texels; one texel of that level is about two texels of the
+        // page.
         const double grow_m = t.index.map().spacing_m(t.index_page(place.page).level) - finest_m;
         TexelRect dirty;
         for (const WorldRect& rect : rects) {
@@ -266,4 +277,4 @@ void VirtualTexture::request_pages(std::span<const PageId> pages) {
         if (page.image.live) impl_->sectors.want({page.image.sector_x, page.image.sector_y}, impl_->frame);
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,5 +1,5 @@
-// The virtual texture on a device: pages composed, kept fresh by dirty rectangles, found through indirection, and equal to
-// the same formulas evaluated directly.
+// The virtual texture on a device: pages composed, kept fresh by dirty rectangles, found through indirection,
+// and equal to the same formulas evaluated directly.
 #include <chrono>
 #include <cmath>
 #include <cstring>
@@ -22,7 +22,9 @@ T need(Result<T> result) {
     LOAM_CHECK(result.ok(), result.ok() ? "" : result.message());
     return std::move(result.value());
 }
-void need(const Status& status) { LOAM_CHECK(status.ok(), status.ok() ? "" : status.message()); }
+void need(const Status& status) {
+    LOAM_CHECK(status.ok(), status.ok() ? "" : status.message());
+}
 
 // Rough: noise of the texel; flat: one colour.
 LayerTextures make_layer(int seed, bool flat) {
@@ -32,11 +34,16 @@ LayerTextures make_layer(int seed, bool flat) {
     t.normal_gloss_occlusion.resize(1);
     t.metalness.resize(1);
     for (int i = 0; i < 64 * 64; ++i) {
-        const uint32_t h = flat ? uint32_t(seed) * 2654435761u : (uint32_t(i) + uint32_t(seed) * 7919u) * 2654435761u;
-        const auto byte = [&](int shift, int low, int high) { return uint8_t(low + int((h >> shift) % uint32_t(high - low))); };
-        t.albedo_reveal[0].insert(t.albedo_reveal[0].end(), {byte(3, 60, 160), byte(9, 60, 140), byte(14, 40, 120), byte(20, 0, 255)});
+        const uint32_t h =
+            flat ? uint32_t(seed) * 2654435761u : (uint32_t(i) + uint32_t(seed) * 7919u) * 2654435761u;
+        const auto byte = [&](int shift, int low, int high) {
+            return uint8_t(low + int((h >> shift) % uint32_t(high - low)));
+        };
+        t.albedo_reveal[0].insert(t.albedo_reveal[0].end(),
+                                  {byte(3, 60, 160), byte(9, 60, 140), byte(14, 40, 120), byte(20, 0, 255)});
         const uint8_t nx = flat ? 128 : byte(7, 100, 156), ny = flat ? 128 : byte(13, 100, 156);
-        t.normal_gloss_occlusion[0].insert(t.normal_gloss_occlusion[0].end(), {nx, ny, byte(17, 40, 120), byte(5, 180, 255)});
+        t.normal_gloss_occlusion[0].insert(t.normal_gloss_occlusion[0].end(),
+                                           {nx, ny, byte(17, 40, 120), byte(5, 180, 255)});
         t.metalness[0].push_back(0);
     }
     build_layer_mips(t);
@@ -44,7 +51,9 @@ LayerTextures make_layer(int seed, bool flat) {
 }
 
 struct World {
-    explicit World(const VirtualTextureDesc& desc, bool flat_layers = false, const test::MapFixtureDesc& map = {}) : fixture(map) {
+    explicit World(const VirtualTextureDesc& desc, bool flat_layers = false,
+                   const test::MapFixtureDesc& map = {})
+        : fixture(map) {
         const auto layers_folder = document().folder() / "layers";
         std::filesystem::create_directories(layers_folder);
         int seed = 1;
@@ -106,7 +115,11 @@ struct World {
 };
 
 VirtualTextureDesc small_desc(PageFormat format) {
-    return {.pages_per_side = 6, .indirection_size = 256, .format = format, .max_live_sectors = 4, .budget_pages = 8};
+    return {.pages_per_side = 6,
+            .indirection_size = 256,
+            .format = format,
+            .max_live_sectors = 4,
+            .budget_pages = 8};
 }
 
 struct Query {
@@ -119,11 +132,18 @@ struct Answer {
 
 std::vector<Answer> ask(World& w, const char* shader, const std::vector<Query>& queries, bool direct) {
     gpu::Device& device = gpu::test_device();
-    std::vector<gpu::Binding> bindings = {gpu::storage_buffer(0), gpu::storage_buffer(1), gpu::storage_buffer(2), gpu::storage_buffer(3)};
+    std::vector<gpu::Binding> bindings = {gpu::storage_buffer(0), gpu::storage_buffer(1),
+                                          gpu::storage_buffer(2), gpu::storage_buffer(3)};
     if (direct) bindings.push_back(gpu::storage_buffer(4));
-    for (uint32_t slot = direct ? 5 : 4; slot < (direct ? 10u : 8u); ++slot) bindings.push_back(gpu::sampled_image(slot));
-    auto pipeline = need(gpu::Pipeline::create(device, gpu::ComputeDesc{.name = "ask", .shader = shader, .bindings = bindings, .push_bytes = 4, .constants = {}}));
-    auto answers = need(gpu::Buffer::create(device, {.name = "answers", .size_bytes = queries.size() * sizeof(Answer), .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
+    for (uint32_t slot = direct ? 5 : 4; slot < (direct ? 10u : 8u); ++slot)
+        bindings.push_back(gpu::sampled_image(slot));
+    auto pipeline = need(gpu::Pipeline::create(
+        device,
+        gpu::ComputeDesc{
+            .name = "ask", .shader = shader, .bindings = bindings, .push_bytes = 4, .constants = {}}));
+    auto answers = need(gpu::Buffer::create(device, {.name = "answers",
+                                                     .size_bytes = queries.size() * sizeof(Answer),
+                                                     .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
     std::vector<Answer> got(queries.size());
     gpu::Frame* frame = need(w.ring->begin());
     const auto slice = w.ring->upload(queries.size() * sizeof(Query));
@@ -131,23 +151,49 @@ std::vector<Answer> ask(World& w, const char* shader, const std::vector<Query>& 
     gpu::Commands& c = frame->commands;
     VirtualTexture& t = *w.texture;
     if (direct) {
-        auto pass = c.pass("ask", {{answers, Access::compute_storage}, {t.direct_params(), Access::compute_sampled}, {t.direct_places(), Access::compute_sampled},
-                                   {w.index->page_table(), Access::compute_sampled}, {w.index->indices(), Access::compute_sampled}, {w.index->tints(), Access::compute_sampled},
-                                   {w.layers->albedo_reveal, Access::compute_sampled}, {w.layers->normal_gloss_occlusion, Access::compute_sampled}, {w.layers->metalness, Access::compute_sampled}});
-        c.bind(pipeline, {{0, *slice.buffer, slice.offset, queries.size() * sizeof(Query)}, {1, answers}, {2, t.direct_params()}, {3, t.direct_places()}, {4, w.index->page_table()},
-                          {5, w.index->indices().view(), t.nearest_sampler()}, {6, w.index->tints().view(), t.nearest_sampler()}, {7, w.layers->albedo_reveal.view(), w.layers->sampler},
-                          {8, w.layers->normal_gloss_occlusion.view(), w.layers->sampler}, {9, w.layers->metalness.view(), w.layers->sampler}});
+        auto pass = c.pass("ask", {{answers, Access::compute_storage},
+                                   {t.direct_params(), Access::compute_sampled},
+                                   {t.direct_places(), Access::compute_sampled},
+                                   {w.index->page_table(), Access::compute_sampled},
+                                   {w.index->indices(), Access::compute_sampled},
+                                   {w.index->tints(), Access::compute_sampled},
+                                   {w.layers->albedo_reveal, Access::compute_sampled},
+                                   {w.layers->normal_gloss_occlusion, Access::compute_sampled},
+                                   {w.layers->metalness, Access::compute_sampled}});
+        c.bind(pipeline, {{0, *slice.buffer, slice.offset, queries.size() * sizeof(Query)},
+                          {1, answers},
+                          {2, t.direct_params()},
+                          {3, t.direct_places()},
+                          {4, w.index->page_table()},
+                          {5, w.index->indices().view(), t.nearest_sampler()},
+                          {6, w.index->tints().view(), t.nearest_sampler()},
+                          {7, w.layers->albedo_reveal.view(), w.layers->sampler},
+                          {8, w.layers->normal_gloss_occlusion.view(), w.layers->sampler},
+                          {9, w.layers->metalness.view(), w.layers->sampler}});
         c.push(pipeline, uint32_t(queries.size()));
         c.dispatch(uint32_t(queries.size() + 63) / 64);
     } else {
-        auto pass = c.pass("ask", {{answers, Access::compute_storage}, {t.params(), Access::compute_sampled}, {t.sector_table(), Access::compute_sampled},
-                                   {t.indirection(), Access::compute_sampled}, {t.atlas(0), Access::compute_sampled}, {t.atlas(1), Access::compute_sampled}, {t.atlas(2), Access::compute_sampled}});
-        c.bind(pipeline, {{0, *slice.buffer, slice.offset, queries.size() * sizeof(Query)}, {1, answers}, {2, t.params()}, {3, t.sector_table()}, {4, t.indirection().view(), t.nearest_sampler()},
-                          {5, t.atlas(0).view(), t.sampler()}, {6, t.atlas(1).view(), t.sampler()}, {7, t.atlas(2).view(), t.sampler()}});
+        auto pass = c.pass("ask", {{answers, Access::compute_storage},
+                                   {t.params(), Access::compute_sampled},
+                                   {t.sector_table(), Access::compute_sampled},
+                                   {t.indirection(), Access::compute_sampled},
+                                   {t.atlas(0), Access::compute_sampled},
+                                   {t.atlas(1), Access::compute_sampled},
+                                   {t.atlas(2), Access::compute_sampled}});
+        c.bind(pipeline, {{0, *slice.buffer, slice.offset, queries.size() * sizeof(Query)},
+                          {1, answers},
+                          {2, t.params()},
+                          {3, t.sector_table()},
+                          {4, t.indirection().view(), t.nearest_sampler()},
+                          {5, t.atlas(0).view(), t.sampler()},
+                          {6, t.atlas(1).view(), t.sampler()},
+                          {7, t.atlas(2).view(), t.sampler()}});
         c.push(pipeline, uint32_t(queries.size()));
         c.dispatch(uint32_t(queries.size() + 63) / 64);
     }
-    w.ring->read_back(c, answers, 0, queries.size() * sizeof(Answer), [&](std::span<const std::byte> bytes) { std::memcpy(got.data(), bytes.data(), bytes.size()); });
+    w.ring->read_back(c, answers, 0, queries.size() * sizeof(Answer), [&](std::span<const std::byte> bytes) {
+        std::memcpy(got.data(), bytes.data(), bytes.size());
+    });
     need(w.ring->finish(*frame));
     return got;
 }
@@ -186,7 +232,8 @@ void random_edits(PageFormat format, int rounds) {
             prints.prints.push_back(print);
         }
         w.on_dirt(w.fixture.apply(prints));
-        if (round % 3 == 1) w.on_dirt(w.fixture.crater(64 + 21 + w.fixture.real(-1, 1), 64 + 32, w.fixture.real(0.3, 3)));
+        if (round % 3 == 1)
+            w.on_dirt(w.fixture.crater(64 + 21 + w.fixture.real(-1, 1), 64 + 32, w.fixture.real(0.3, 3)));
         w.run_frames(1 + round % 3);
     }
     for (int i = 0; i < 200 && w.texture->statistics().dirty_pages > 0; ++i) w.run_frames(1);
@@ -197,8 +244,12 @@ void random_edits(PageFormat format, int rounds) {
     EXPECT_GT(s.rects_composed, s.pages_composed) << "rectangles, not pages, were composed again";
 }
 
-TEST_F(TextureTest, RandomEditsLeaveNoStaleTexelBc1) { random_edits(PageFormat::bc1x3, 8); }
-TEST_F(TextureTest, RandomEditsLeaveNoStaleTexelRgba8) { random_edits(PageFormat::rgba8, 6); }
+TEST_F(TextureTest, RandomEditsLeaveNoStaleTexelBc1) {
+    random_edits(PageFormat::bc1x3, 8);
+}
+TEST_F(TextureTest, RandomEditsLeaveNoStaleTexelRgba8) {
+    random_edits(PageFormat::rgba8, 6);
+}
 
 TEST_F(TextureTest, DirtThatIsNotToldIsFound) {
     World w(small_desc(PageFormat::bc1x3));
@@ -212,11 +263,13 @@ TEST_F(TextureTest, DirtThatIsNotToldIsFound) {
 std::vector<Query> places_near_camera(World& w, float log2_texel) {
     std::vector<Query> queries;
     for (int i = 0; i < 2000; ++i)
-        queries.push_back({{float(w.fixture.real(-1.4, 0.4)), float(w.fixture.real(-1.4, 0.4))}, log2_texel, 0});
+        queries.push_back(
+            {{float(w.fixture.real(-1.4, 0.4)), float(w.fixture.real(-1.4, 0.4))}, log2_texel, 0});
     return queries;
 }
 
-// The same place through the page cache and evaluated directly. rgba8: what is left is the cache's own sampling and rounding.
+// The same place through the page cache and evaluated directly. rgba8: what is left is the cache's own
+// sampling and rounding.
 TEST_F(TextureTest, TheCacheShowsWhatDirectEvaluationGives) {
     World w(small_desc(PageFormat::rgba8), true);
     w.want_some_pages();
@@ -236,7 +289,8 @@ TEST_F(TextureTest, TheCacheShowsWhatDirectEvaluationGives) {
         mean += d.x + d.y + d.z;
     }
     mean /= double(queries.size()) * 3;
-    std::printf("cache against direct: albedo worst %.4f mean %.5f, rest worst %.4f\n", worst_albedo, mean, worst_rest);
+    std::printf("cache against direct: albedo worst %.4f mean %.5f, rest worst %.4f\n", worst_albedo, mean,
+                worst_rest);
     EXPECT_LT(mean, 0.003);
     EXPECT_LT(worst_albedo, 0.03);
     EXPECT_LT(worst_rest, 0.04);
@@ -259,7 +313,8 @@ TEST_F(TextureTest, AFlatColourIsSampledWithinBc1Error) {
     for (int c = 0; c < 3; ++c) {
         const double s = grass.albedo_reveal[0][size_t(c)] / 255.0;
         const double linear = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-        for (const Answer& a : answers) ASSERT_NEAR(std::sqrt(a.albedo_gloss[c]), std::sqrt(linear), 3.0 / 255);
+        for (const Answer& a : answers)
+            ASSERT_NEAR(std::sqrt(a.albedo_gloss[c]), std::sqrt(linear), 3.0 / 255);
     }
     for (const Answer& a : answers) ASSERT_NEAR(a.normal_occlusion.x, 0, 0.005);
 }
@@ -273,7 +328,9 @@ TEST_F(TextureTest, Timing) {
         for (int i = 0; i < repeats; ++i) {
             const auto start = std::chrono::steady_clock::now();
             body();
-            best = std::min(best, std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
+            best = std::min(
+                best,
+                std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count());
         }
         return best;
     };
@@ -283,23 +340,28 @@ TEST_F(TextureTest, Timing) {
         need(w.ring->finish(*frame));
     };
     const double idle = timed(one_frame, 10);
-    const double print = timed([&] {
-        FootprintsCommand prints;
-        Footprint p;
-        p.x_m = 64 + 20.5;
-        p.y_m = 64 + 31.5;
-        p.seed = 3;
-        prints.prints.push_back(p);
-        w.on_dirt(w.fixture.apply(prints));
-        one_frame();
-    }, 8);
+    const double print = timed(
+        [&] {
+            FootprintsCommand prints;
+            Footprint p;
+            p.x_m = 64 + 20.5;
+            p.y_m = 64 + 31.5;
+            p.seed = 3;
+            prints.prints.push_back(p);
+            w.on_dirt(w.fixture.apply(prints));
+            one_frame();
+        },
+        8);
     const WorldRect page_square{64 + 20, 64 + 31, 64 + 21, 64 + 32};
-    const double page = timed([&] {
-        const WorldRect rects[] = {page_square};
-        w.texture->on_dirt(rects);
-        one_frame();
-    }, 8);
-    std::printf("idle frame %.2f ms, a footprint %.2f ms, a 1 m page with its ancestors %.2f ms\n", idle, print, page);
+    const double page = timed(
+        [&] {
+            const WorldRect rects[] = {page_square};
+            w.texture->on_dirt(rects);
+            one_frame();
+        },
+        8);
+    std::printf("idle frame %.2f ms, a footprint %.2f ms, a 1 m page with its ancestors %.2f ms\n", idle,
+                print, page);
 }
 
-} // namespace
+}  // namespace

@@ -21,17 +21,25 @@ FeedbackImages images() {
     return i;
 }
 
-uint32_t value(int mip, int id, int x, int y) { return uint32_t(mip) << 24 | uint32_t(id) << 16 | uint32_t(y) << 8 | uint32_t(x); }
+uint32_t value(int mip, int id, int x, int y) {
+    return uint32_t(mip) << 24 | uint32_t(id) << 16 | uint32_t(y) << 8 | uint32_t(x);
+}
 
-FeedbackResult analyse(const std::vector<uint32_t>& values, uint32_t capacity = 400, uint32_t threshold = 3,
-                       std::function<bool(const PageId&)> visible = [](const PageId&) { return false; }) {
+FeedbackResult analyse(
+    const std::vector<uint32_t>& values, uint32_t capacity = 400, uint32_t threshold = 3,
+    std::function<bool(const PageId&)> visible = [](const PageId&) { return false; }) {
     static const FeedbackImages known = images();
-    return analyse_feedback({.values = values, .images = &known, .layout = kLayout, .capacity_pages = capacity,
-                             .threshold = threshold, .is_visible = std::move(visible)});
+    return analyse_feedback({.values = values,
+                             .images = &known,
+                             .layout = kLayout,
+                             .capacity_pages = capacity,
+                             .threshold = threshold,
+                             .is_visible = std::move(visible)});
 }
 
 const PageRequest* find(const FeedbackResult& r, const PageId& page) {
-    const auto it = std::find_if(r.requests.begin(), r.requests.end(), [&](const PageRequest& q) { return q.page == page; });
+    const auto it = std::find_if(r.requests.begin(), r.requests.end(),
+                                 [&](const PageRequest& q) { return q.page == page; });
     return it == r.requests.end() ? nullptr : &*it;
 }
 
@@ -50,13 +58,15 @@ TEST(Feedback, ChildrenCountForTheirParents) {
     EXPECT_EQ(find(r, {image, 6, 12, 20})->popularity, 10u);
     EXPECT_EQ(find(r, {image, 5, 6, 10})->popularity, 15u);
     EXPECT_GT(find(r, {image, 0, 0, 0})->popularity, 15u);
-    EXPECT_EQ(r.requests.size(), 8u); // seven depths and one sibling
+    EXPECT_EQ(r.requests.size(), 8u);  // seven depths and one sibling
 }
 
 TEST(Feedback, ParentsComeBeforeChildrenAndPopularityFalls) {
     std::mt19937 random(5);
     std::vector<uint32_t> values;
-    for (int i = 0; i < 5000; ++i) values.push_back(value(int(random() % 4), random() % 2 ? 3 : 0, int(random() % 8), int(random() % 8)));
+    for (int i = 0; i < 5000; ++i)
+        values.push_back(
+            value(int(random() % 4), random() % 2 ? 3 : 0, int(random() % 8), int(random() % 8)));
     const auto r = analyse(values, 100'000);
     std::set<std::tuple<bool, int, int, int>> seen;
     for (size_t i = 0; i < r.requests.size(); ++i) {
@@ -83,8 +93,9 @@ TEST(Feedback, AtMostAThirdOfTheCache) {
 }
 
 TEST(Feedback, ValuesThatMeanNoPageAreIgnored) {
-    const std::vector<uint32_t> values = {value(9, 0, 0, 0),  value(9, 0, 0, 0),  value(9, 0, 0, 0),   value(0, 77, 1, 1), value(0, 77, 1, 1),
-                                          value(0, 77, 1, 1), value(5, 0, 60, 0), value(5, 0, 60, 0), value(5, 0, 60, 0)};
+    const std::vector<uint32_t> values = {value(9, 0, 0, 0),  value(9, 0, 0, 0),  value(9, 0, 0, 0),
+                                          value(0, 77, 1, 1), value(0, 77, 1, 1), value(0, 77, 1, 1),
+                                          value(5, 0, 60, 0), value(5, 0, 60, 0), value(5, 0, 60, 0)};
     EXPECT_TRUE(analyse(values).requests.empty());
 }
 
@@ -93,7 +104,8 @@ TEST(Feedback, TooCoarseDefaultPagesAskForSectors) {
     const auto r = analyse(values);
     ASSERT_EQ(r.wants_finer.size(), 1u);
     EXPECT_EQ(r.wants_finer[0], (PageId{{}, 6, 9, 12}));
-    EXPECT_TRUE(analyse(std::vector<uint32_t>(4, value(0, 3, 9, 12) | kFeedbackFinerBit)).wants_finer.empty());
+    EXPECT_TRUE(
+        analyse(std::vector<uint32_t>(4, value(0, 3, 9, 12) | kFeedbackFinerBit)).wants_finer.empty());
 }
 
-} // namespace
+}  // namespace

@@ -23,7 +23,8 @@ TEST(Ompv, EveryCornerIsVisitedOnceInAscendingOrder) {
         float sum = 0;
         uint from = 0, last = 0;
         int visits = 0;
-        for (uint layer = ompv_next(layers, weights, 0); layer != kNoLayer; layer = ompv_next(layers, weights, from)) {
+        for (uint layer = ompv_next(layers, weights, 0); layer != kNoLayer;
+             layer = ompv_next(layers, weights, from)) {
             if (visits > 0) {
                 EXPECT_GT(layer, last);
             }
@@ -58,7 +59,8 @@ TEST(Ompv, FourDifferentCornersAreFourLayers) {
 TEST(Ompv, OneLayerGivesTheBitsOfTheMergedOne) {
     std::mt19937 random(2);
     for (int i = 0; i < 1000; ++i) {
-        const vec4 weights = ompv_weights(vec2(float(random() % 997) / 997.0f, float(random() % 997) / 997.0f));
+        const vec4 weights =
+            ompv_weights(vec2(float(random() % 997) / 997.0f, float(random() % 997) / 997.0f));
         const vec4 share = ompv_share(uvec4(3), weights, 3);
         const vec3 t0(0.3f, 1, 0.5f), t1(0.7f, 0.1f, 0.5f), t2(1), t3(0);
         EXPECT_EQ(ompv_tint(share, t0, t1, t2, t3), ompv_tint(weights, t0, t1, t2, t3));
@@ -88,7 +90,9 @@ TEST(Ompv, TintDecodingIsNearTheStandardCurve) {
     }
 }
 
-vec3 from_565(uint c) { return bc1_unpack565(c); }
+vec3 from_565(uint c) {
+    return bc1_unpack565(c);
+}
 
 TEST(Bc1, FlatColoursOf565AreExact) {
     std::mt19937 random(3);
@@ -130,7 +134,8 @@ TEST(Bc1, FourColourModeUnlessEqual) {
     std::mt19937 random(6);
     for (int n = 0; n < 2000; ++n) {
         vec3 texels[16];
-        for (vec3& t : texels) t = vec3(float(random() % 256), float(random() % 256), float(random() % 256)) / 255.0f;
+        for (vec3& t : texels)
+            t = vec3(float(random() % 256), float(random() % 256), float(random() % 256)) / 255.0f;
         const uvec2 block = bc1_encode(texels, vec3(1));
         const uint c0 = block.x & 0xffff, c1 = block.x >> 16;
         EXPECT_TRUE(c0 > c1 || (c0 == c1 && block.y == 0));
@@ -148,13 +153,17 @@ TEST(Bc1, AGroundPageIsAbove33Decibels) {
         const int ix = int(x), iy = int(y);
         const float u = x - float(ix), v = y - float(iy);
         const auto at = [&](int i, int j) { return grid[size_t(j % 65) * 65 + size_t(i % 65)]; };
-        return (at(ix, iy) * (1 - u) + at(ix + 1, iy) * u) * (1 - v) + (at(ix, iy + 1) * (1 - u) + at(ix + 1, iy + 1) * u) * v;
+        return (at(ix, iy) * (1 - u) + at(ix + 1, iy) * u) * (1 - v) +
+               (at(ix, iy + 1) * (1 - u) + at(ix + 1, iy + 1) * u) * v;
     };
     for (int y = 0; y < kSide; ++y)
         for (int x = 0; x < kSide; ++x) {
-            const float n = 0.5f * noise(float(x) / 16, float(y) / 16) + 0.3f * noise(float(x) / 5, float(y) / 5) + 0.2f * noise(float(x) / 2, float(y) / 2);
+            const float n = 0.5f * noise(float(x) / 16, float(y) / 16) +
+                            0.3f * noise(float(x) / 5, float(y) / 5) +
+                            0.2f * noise(float(x) / 2, float(y) / 2);
             const float hue = noise(float(x) / 9 + 20, float(y) / 9 + 7);
-            page[size_t(y * kSide + x)] = glm::clamp(vec3(0.15f + 0.5f * n, 0.12f + 0.45f * n + 0.08f * hue, 0.1f + 0.3f * n), 0.0f, 1.0f);
+            page[size_t(y * kSide + x)] = glm::clamp(
+                vec3(0.15f + 0.5f * n, 0.12f + 0.45f * n + 0.08f * hue, 0.1f + 0.3f * n), 0.0f, 1.0f);
         }
     double error = 0;
     for (int by = 0; by < kSide; by += 4)
@@ -190,4 +199,4 @@ TEST(LayerPlace, PrecisionHoldsAtTheFarCorner) {
     EXPECT_NEAR(uv, exact + 0.987 / tile_m, 0.25 / 1024);
 }
 
-} // namespace
+}  // namespace

@@ -12,14 +12,16 @@ namespace {
 using namespace loam;
 using State = PagePool::State;
 
-PageId page(int n) { return {{}, 6, n % 64, n / 64}; }
+PageId page(int n) {
+    return {{}, 6, n % 64, n / 64};
+}
 
 TEST(PagePool, RandomTrafficKeepsTheInvariants) {
     std::mt19937 random(11);
     PagePool pool(5);
     const int root = pool.take(PageId{}, 1);
     ASSERT_EQ(root, 0);
-    std::map<int, uint64_t> left_tree; // place → frame
+    std::map<int, uint64_t> left_tree;  // place → frame
     uint64_t recycled = 0;
     for (uint64_t frame = 2; frame < 4000; ++frame) {
         pool.promote(frame, [&](int place) { EXPECT_LT(pool.place(place).last_requested, frame); });
@@ -73,7 +75,7 @@ TEST(PagePool, DirtReachesRestingPages) {
     pool.retire(place, 10);
     pool.mark_dirty(place, {0, 0, 8, 8});
     EXPECT_EQ(pool.place(place).dirty, (TexelRect{0, 0, 8, 8}));
-    EXPECT_EQ(pool.takeable_count(10), 2); // two free ones
+    EXPECT_EQ(pool.takeable_count(10), 2);  // two free ones
     EXPECT_EQ(pool.takeable_count(13), 3);
 }
 
@@ -89,7 +91,9 @@ TEST(PagePool, APageIsNotUsableInItsOwnFrame) {
 
 SectorSetDesc sector_desc(int max_live, int log2_size) {
     return {.layout = {.default_log2_width = 5, .default_log2_page = 0, .sector_log2_width = 4},
-            .indirection_log2_size = log2_size, .max_live = max_live, .bounds = {0, 0, 2048, 2048}};
+            .indirection_log2_size = log2_size,
+            .max_live = max_live,
+            .bounds = {0, 0, 2048, 2048}};
 }
 
 TEST(SectorSet, OnlyWantedSectorsInsideTheRadiusLive) {
@@ -116,7 +120,7 @@ TEST(SectorSet, WhenFullTheFarthestMakesWayForAMuchNearerOneOnly) {
     sectors.want({7, 0}, 1);
     sectors.update(camera, 1000, 1);
     ASSERT_EQ(sectors.live().size(), 2u);
-    sectors.want({6, 0}, 2); // not much nearer
+    sectors.want({6, 0}, 2);  // not much nearer
     EXPECT_TRUE(sectors.update(camera, 1000, 2).empty());
     sectors.want({1, 0}, 3);
     const auto dropped = sectors.update(camera, 1000, 3);
@@ -126,7 +130,7 @@ TEST(SectorSet, WhenFullTheFarthestMakesWayForAMuchNearerOneOnly) {
 }
 
 TEST(SectorSet, AFullIndirectionTextureLeavesSectorsOnTheDefault) {
-    SectorSet sectors(sector_desc(200, 6)); // 64²: the default takes a quarter, 12 images of 16² remain
+    SectorSet sectors(sector_desc(200, 6));  // 64²: the default takes a quarter, 12 images of 16² remain
     for (int i = 0; i < 20; ++i) sectors.want({i, 0}, 1);
     sectors.update({0, 0}, 5000, 1);
     EXPECT_EQ(sectors.live().size(), 12u);
@@ -145,4 +149,4 @@ TEST(SectorSet, LeavesBeyondTheRadiusOrWhenIdle) {
     EXPECT_TRUE(sectors.live().empty());
 }
 
-} // namespace
+}  // namespace

@@ -13,7 +13,8 @@ using namespace loam;
 
 // What indirection.comp does; counts writes a texel so that overlapping squares show.
 struct Table {
-    explicit Table(int side) : side(side), texels(size_t(side) * size_t(side), 0x12345678u), writes(texels.size(), 0) {}
+    explicit Table(int side)
+        : side(side), texels(size_t(side) * size_t(side), 0x12345678u), writes(texels.size(), 0) {}
     void fill(const std::vector<shared::IndirectionFill>& fills) {
         std::fill(writes.begin(), writes.end(), 0);
         for (const auto& f : fills)
@@ -34,11 +35,13 @@ int differing_cells(const PageTree& tree, const Table& table, glm::ivec2 origin)
     const int side = 1 << tree.log2_width();
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x)
-            count += table.texels[size_t(origin.y + y) * size_t(table.side) + size_t(origin.x + x)] != tree.cell(x, y);
+            count += table.texels[size_t(origin.y + y) * size_t(table.side) + size_t(origin.x + x)] !=
+                     tree.cell(x, y);
     return count;
 }
 
-// Random pages come and go; now and then the delta is applied. `lose`: drop a square a time, to see the test fail.
+// Random pages come and go; now and then the delta is applied. `lose`: drop a square a time, to see the test
+// fail.
 int random_traffic(int steps, bool lose) {
     constexpr int kLog2 = 5;
     std::mt19937 random(7);
@@ -63,9 +66,13 @@ int random_traffic(int steps, bool lose) {
     return wrong;
 }
 
-TEST(PageTree, TheDeltasMakeTheTable) { EXPECT_EQ(random_traffic(10'000, false), 0); }
+TEST(PageTree, TheDeltasMakeTheTable) {
+    EXPECT_EQ(random_traffic(10'000, false), 0);
+}
 
-TEST(PageTree, ALostSquareIsSeen) { EXPECT_GT(random_traffic(200, true), 0); }
+TEST(PageTree, ALostSquareIsSeen) {
+    EXPECT_GT(random_traffic(200, true), 0);
+}
 
 TEST(PageTree, NothingChangedNothingWritten) {
     PageTree tree(4);
@@ -146,4 +153,4 @@ TEST(IndirectionAllocator, SquaresAreAlignedAndDisjoint) {
     EXPECT_FALSE(allocator.allocate(0).has_value());
 }
 
-} // namespace
+}  // namespace
