@@ -194,14 +194,19 @@ Status Session::step(const Camera& camera, int width, int height, const FrameSet
 
 Camera Session::default_camera() {
     const WorldRect bounds = document_->bounds();
-    const double side = std::max(bounds.width(), bounds.height());
-    const glm::dvec2 center = bounds.center();
-    const double ground_m = height_m(center.x, center.y).ok() ? *height_m(center.x, center.y) : 0.0;
-    auto top = largest_height_m(*document_);
-    // Beyond the corner and a third of the map up: near ground fills the foot of the picture, the far edge meets the sky.
-    const glm::dvec3 eye(center.x - 0.62 * side, center.y - 0.72 * side,
-                         std::max(ground_m + 0.40 * side, (top ? *top : 0.0) + 0.16 * side));
-    return Camera::look_at(eye, {center.x, center.y - 0.06 * side, ground_m}, 0.85);
+    const glm::dvec2 size(bounds.width(), bounds.height());
+    const auto ground_m = [&](glm::dvec2 at) {
+        const auto height = height_m(at.x, at.y);
+        return height ? *height : 0.0;
+    };
+    // Over the corner, high enough to look over most of what is before it: the ground fills the foot of the picture and the far edge
+    // meets the sky in its upper third.
+    const glm::dvec2 corner = size * glm::dvec2(0.06, 0.04), middle = size * 0.55;
+    const double side = std::max(size.x, size.y);
+    const auto top = largest_height_m(*document_);
+    const double over_corner_m = ground_m(corner) + 0.13 * side;
+    const double eye_m = std::max(over_corner_m, top ? std::min(*top + 0.02 * side, over_corner_m + 0.1 * side) : 0.0);
+    return Camera::look_at({corner, eye_m}, {middle, ground_m(middle) + 0.02 * side}, 0.9);
 }
 
 // --- queries ---

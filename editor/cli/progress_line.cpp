@@ -49,7 +49,7 @@ Going ProgressLine::show(double share, std::string_view what) {
         std::fflush(stderr);
         shown_percent_ = percent;
         shown_what_ = what;
-    } else if (percent / 10 > shown_percent_ / 10 || shown_percent_ < 0) {
+    } else if (percent / 10 > std::max(0, shown_percent_) / 10) {
         fmt::print(stderr, "{:3d} %  {}\n", percent, what);
         shown_percent_ = percent;
     }
