@@ -20,7 +20,7 @@ constexpr KnownElevation kKnown[] = {
     {"halfdome.png", 1175, 0.05, 24.4, 30.9},  {"gabilan.png", 187, 0.01, 1, 1},
 };
 
-} // namespace
+}  // namespace
 
 Result<std::vector<ElevationMap>> load_known_elevations(const std::filesystem::path& folder) {
     std::vector<ElevationMap> maps;
@@ -44,4 +44,4 @@ Result<std::vector<ElevationMap>> load_known_elevations(const std::filesystem::p
     return maps;
 }
 
-} // namespace loam
+}  // namespace loam

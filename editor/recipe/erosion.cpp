@@ -15,9 +15,11 @@ constexpr int kDx[8] = {1, 0, -1, 0, 1, -1, -1, 1};
 constexpr int kDy[8] = {0, 1, 0, -1, 1, 1, -1, -1};
 constexpr float kDistance[8] = {1, 1, 1, 1, 1.41421356f, 1.41421356f, 1.41421356f, 1.41421356f};
 
-bool inside(int i, int j, int size) { return i >= 0 && j >= 0 && i < size && j < size; }
+bool inside(int i, int j, int size) {
+    return i >= 0 && j >= 0 && i < size && j < size;
+}
 
-} // namespace
+}  // namespace
 
 Drainage route(const Grid& height_m, double spacing_m, Outlets outlets, uint32_t wander) {
     const int n = height_m.size;
@@ -78,7 +80,9 @@ Drainage route(const Grid& height_m, double spacing_m, Outlets outlets, uint32_t
                     if (!inside(x, y, n)) continue;
                     const uint32_t other = static_cast<uint32_t>(y * n + x);
                     float steep = (d.filled_m.v[c] - d.filled_m.v[other]) / kDistance[k];
-                    if (wander) steep *= 0.55f + 0.9f * unit_from_hash(hash(c * 8 + static_cast<uint32_t>(k), wander));
+                    if (wander)
+                        steep *=
+                            0.55f + 0.9f * unit_from_hash(hash(c * 8 + static_cast<uint32_t>(k), wander));
                     if (steep > best) best = steep, d.receiver[c] = other;
                 }
             }
@@ -102,13 +106,15 @@ void incise(Grid& height_m, const Drainage& d, double spacing_m, const Incision&
         const float raised = height_m.v[c] + in.uplift_m * (in.uplift_share ? in.uplift_share->v[c] : 1.0f);
         const float f = in.rate / strength * std::sqrt(d.area_m2.v[c]) / distance;
         const float below = height_m.v[r];
-        float h = raised > below ? (raised + f * below) / (1 + f) : below + 0.001f; // a pit is filled to its spill
+        float h =
+            raised > below ? (raised + f * below) / (1 + f) : below + 0.001f;  // a pit is filled to its spill
         h = std::min(h, below + in.steepest * strength * distance);
         height_m.v[c] = h;
     }
 }
 
-SedimentBalance carry_sediment(Grid& height_m, Grid& deposit_m, const Drainage& d, double spacing_m, const Transport& t) {
+SedimentBalance carry_sediment(Grid& height_m, Grid& deposit_m, const Drainage& d, double spacing_m,
+                               const Transport& t) {
     const int n = height_m.size;
     const double cell = spacing_m * spacing_m;
     Grid area(n, static_cast<float>(cell)), load(n);
@@ -124,12 +130,13 @@ SedimentBalance carry_sediment(Grid& height_m, Grid& deposit_m, const Drainage& 
             const float fall = d.filled_m.v[c] - d.filled_m.v[other];
             if (fall <= 0) continue;
             const float steep = fall / (kDistance[k] * static_cast<float>(spacing_m));
-            weight[k] = steep * std::sqrt(steep) * (k < 4 ? 0.5f : 0.354f); // Freeman's exponent, his contour lengths
+            weight[k] = steep * std::sqrt(steep) *
+                        (k < 4 ? 0.5f : 0.354f);  // Freeman's exponent, his contour lengths
             whole += weight[k];
             slope = std::max(slope, steep);
             drop = std::min(drop, std::max(height_m.v[c] - height_m.v[other], 0.0f));
         }
-        if (whole <= 0) { // an outlet: what arrives leaves the map
+        if (whole <= 0) {  // an outlet: what arrives leaves the map
             balance.exported_m3 += load.v[c];
             continue;
         }
@@ -145,8 +152,8 @@ SedimentBalance carry_sediment(Grid& height_m, Grid& deposit_m, const Drainage& 
             balance.deposited_m3 += layer * cell;
             carried -= static_cast<float>(layer * cell);
         } else {
-            const float layer =
-                std::min({static_cast<float>((capacity - carried) * t.pick_up / cell), t.deepest_m, drop * 0.5f});
+            const float layer = std::min(
+                {static_cast<float>((capacity - carried) * t.pick_up / cell), t.deepest_m, drop * 0.5f});
             h -= layer;
             deposit_m.v[c] = std::max(deposit_m.v[c] - layer, 0.0f);
             balance.eroded_m3 += layer * cell;
@@ -174,9 +181,10 @@ void fill_valleys(Grid& height_m, Grid& deposit_m, const Drainage& d, double spa
             floor_m.v[c] = height_m.v[c] + depth_m * std::min(std::pow(area * 1e-6f, 0.35f), 3.0f) *
                                                smooth_step(smallest_area_m2, 6 * smallest_area_m2, area);
         else
-            floor_m.v[c] = floor_m.v[r] + 0.03f * static_cast<float>(spacing_m); // rises 3 % away from the stream
+            floor_m.v[c] =
+                floor_m.v[r] + 0.03f * static_cast<float>(spacing_m);  // rises 3 % away from the stream
     }
-    const Grid level = blurred(floor_m, 2, 2); // neighbours may reach the stream at different places
+    const Grid level = blurred(floor_m, 2, 2);  // neighbours may reach the stream at different places
     parallel_ranges(static_cast<int>(height_m.v.size()), 4096, [&](int begin, int end) {
         for (int c = begin; c < end; ++c) {
             // Smooth maximum over a quarter of the fill: the floor meets the slope in a concave foot.
@@ -190,4 +198,4 @@ void fill_valleys(Grid& height_m, Grid& deposit_m, const Drainage& d, double spa
     });
 }
 
-} // namespace loam::recipe
+}  // namespace loam::recipe

@@ -10,7 +10,8 @@ namespace loam::recipe {
 float Grid::bilinear(float x, float y) const {
     const float top = static_cast<float>(size - 1);
     x = std::clamp(x, 0.0f, top), y = std::clamp(y, 0.0f, top);
-    const int i = std::min(static_cast<int>(x), std::max(size - 2, 0)), j = std::min(static_cast<int>(y), std::max(size - 2, 0));
+    const int i = std::min(static_cast<int>(x), std::max(size - 2, 0)),
+              j = std::min(static_cast<int>(y), std::max(size - 2, 0));
     const int i1 = std::min(i + 1, size - 1), j1 = std::min(j + 1, size - 1);
     const float u = x - static_cast<float>(i), w = y - static_cast<float>(j);
     return (at(i, j) * (1 - u) + at(i1, j) * u) * (1 - w) + (at(i, j1) * (1 - u) + at(i1, j1) * u) * w;
@@ -71,7 +72,8 @@ Grid slope_of(const Grid& h, double spacing_m) {
     parallel_ranges(h.size, 32, [&](int begin, int end) {
         for (int j = begin; j < end; ++j)
             for (int i = 0; i < h.size; ++i) {
-                const int w = std::max(i - 1, 0), e = std::min(i + 1, last), s = std::max(j - 1, 0), n = std::min(j + 1, last);
+                const int w = std::max(i - 1, 0), e = std::min(i + 1, last), s = std::max(j - 1, 0),
+                          n = std::min(j + 1, last);
                 const double dx = (h.at(e, j) - h.at(w, j)) / (std::max(e - w, 1) * spacing_m);
                 const double dy = (h.at(i, n) - h.at(i, s)) / (std::max(n - s, 1) * spacing_m);
                 out.at(i, j) = static_cast<float>(std::sqrt(dx * dx + dy * dy));
@@ -98,8 +100,8 @@ Grid curvature_of(const Grid& h, double spacing_m) {
 Grid blurred(const Grid& source, int radius, int passes) {
     Grid a = source, b(source.size);
     const int n = source.size;
-    // One pass is rows of `a` into columns of `b`, twice: each output is its own sum, begun afresh a row, so that the
-    // rounding does not depend on the split.
+    // One pass is rows of `a` into columns of `b`, twice: each output is its own sum, begun afresh a row, so
+    // that the rounding does not depend on the split.
     const auto rows_transposed = [&](const Grid& from, Grid& to) {
         parallel_ranges(n, 16, [&](int begin, int end) {
             for (int j = begin; j < end; ++j) {
@@ -120,4 +122,4 @@ Grid blurred(const Grid& source, int radius, int passes) {
     return a;
 }
 
-} // namespace loam::recipe
+}  // namespace loam::recipe

@@ -18,16 +18,17 @@ struct Grid {
     [[nodiscard]] float bilinear(float x, float y) const;
 };
 
-// The same square of the world with other samples: Catmull-Rom, which goes through the old samples and has no creases at
-// them. Point-samples when going down.
+// The same square of the world with other samples: Catmull-Rom, which goes through the old samples and has no
+// creases at them. Point-samples when going down.
 [[nodiscard]] Grid resampled(const Grid& source, int size);
-[[nodiscard]] Grid resampled_linear(const Grid& source, int size); // never beyond the old extremes
+[[nodiscard]] Grid resampled_linear(const Grid& source, int size);  // never beyond the old extremes
 
 // Slope (rise over run, ≥ 0) and curvature (Laplacian, 1/m; > 0 in hollows) by central differences.
 [[nodiscard]] Grid slope_of(const Grid& height_m, double spacing_m);
 [[nodiscard]] Grid curvature_of(const Grid& height_m, double spacing_m);
 
-// Mean over a (2 radius + 1)² square cut off at the edges, `passes` times: three passes are close to a Gaussian.
+// Mean over a (2 radius + 1)² square cut off at the edges, `passes` times: three passes are close to a
+// Gaussian.
 [[nodiscard]] Grid blurred(const Grid& source, int radius, int passes = 2);
 
-} // namespace loam::recipe
+}  // namespace loam::recipe

@@ -8,7 +8,7 @@ namespace loam {
 
 namespace {
 
-constexpr int kMostSamples = 2101; // 16.8 km at 8 m
+constexpr int kMostSamples = 2101;  // 16.8 km at 8 m
 
 using ShapeFunction = Result<recipe::Shape> (*)(const recipe::ShapeRequest&, const Progress&);
 
@@ -21,11 +21,12 @@ ShapeFunction shape_function(const std::string& name) {
     return nullptr;
 }
 
-} // namespace
+}  // namespace
 
 const std::vector<RecipeName>& ground_recipe_names() {
     static const std::vector<RecipeName> names = {
-        {"valley", "an alpine valley: ridges and tributaries, scree at the foot of rock, a flat floor with fans"},
+        {"valley",
+         "an alpine valley: ridges and tributaries, scree at the foot of rock, a flat floor with fans"},
         {"ridge", "a mountain crest across the map, draining to all sides"},
         {"hills", "gentle soil-mantled hills with hollows and small streams"},
         {"dunes", "a field of sand dunes with slip faces"},
@@ -44,7 +45,8 @@ Result<GroundMaps> make_ground(const RecipeRequest& request, const Progress& pro
     const ShapeFunction shape_of = shape_function(request.name);
     if (!shape_of) {
         std::string names;
-        for (const RecipeName& n : ground_recipe_names()) names += (names.empty() ? "" : ", ") + std::string(n.name);
+        for (const RecipeName& n : ground_recipe_names())
+            names += (names.empty() ? "" : ", ") + std::string(n.name);
         return error("there is no recipe \"{}\"; there are {}", request.name, names);
     }
     if (!(request.size_m >= 64 && request.size_m <= 16800))
@@ -53,11 +55,13 @@ Result<GroundMaps> make_ground(const RecipeRequest& request, const Progress& pro
     GroundMaps maps;
     maps.spacing_m = recipe_spacing_m(request.size_m);
     maps.size = static_cast<int>(std::lround(request.size_m / maps.spacing_m)) + 1;
-    auto shape = shape_of({.size = maps.size, .spacing_m = maps.spacing_m, .seed = request.seed}, part_of(progress, 0, 0.9));
+    auto shape = shape_of({.size = maps.size, .spacing_m = maps.spacing_m, .seed = request.seed},
+                          part_of(progress, 0, 0.9));
     if (!shape) return shape.error();
 
     LOAM_TRY(step_progress(progress, 0.92, "following the water"));
-    recipe::Drainage drainage = recipe::route(shape->height_m, maps.spacing_m, recipe::Outlets::all_edges, request.seed | 1u);
+    recipe::Drainage drainage =
+        recipe::route(shape->height_m, maps.spacing_m, recipe::Outlets::all_edges, request.seed | 1u);
     maps.flow_m2 = std::move(drainage.area_m2.v);
     maps.slope = recipe::slope_of(shape->height_m, maps.spacing_m).v;
     maps.curvature = recipe::curvature_of(shape->height_m, maps.spacing_m).v;
@@ -67,4 +71,4 @@ Result<GroundMaps> make_ground(const RecipeRequest& request, const Progress& pro
     return maps;
 }
 
-} // namespace loam
+}  // namespace loam

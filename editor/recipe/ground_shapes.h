@@ -22,15 +22,15 @@ Result<Shape> shape_hills(const ShapeRequest& request, const Progress& progress)
 Result<Shape> shape_dunes(const ShapeRequest& request, const Progress& progress);
 Result<Shape> shape_plain(const ShapeRequest& request, const Progress& progress);
 
-// Bends the ground sideways by up to some 3 % of the map: streams that grew along the eight directions of a coarse grid
-// become curves, and the finer grid's incision puts them in order again.
+// Bends the ground sideways by up to some 3 % of the map: streams that grew along the eight directions of a
+// coarse grid become curves, and the finer grid's incision puts them in order again.
 void bend(Grid& height_m, uint32_t seed, float strength);
 
 // Fills a grid with f(u, v), u and v in 0 … 1 across the map.
 template <typename F>
 Grid filled_by(int size, F&& f);
 
-} // namespace loam::recipe
+}  // namespace loam::recipe
 
 #include "runtime/base/job_queue.h"
 
@@ -48,4 +48,4 @@ Grid filled_by(int size, F&& f) {
     return out;
 }
 
-} // namespace loam::recipe
+}  // namespace loam::recipe

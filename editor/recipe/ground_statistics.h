@@ -1,4 +1,5 @@
-// How steep and how bent a ground is: percentiles of slope and curvature, to set recipes beside measured grounds.
+// How steep and how bent a ground is: percentiles of slope and curvature, to set recipes beside measured
+// grounds.
 #pragma once
 
 #include <array>
@@ -16,19 +17,20 @@ inline constexpr std::array<int, 7> kGroundPercentiles = {5, 25, 50, 75, 90, 95,
 
 struct GroundStatistics {
     int columns = 0, rows = 0;
-    double relief_m = 0;                 // highest less lowest
-    std::array<double, 7> slope_deg{};   // at kGroundPercentiles
-    std::array<double, 7> curvature{};   // |Laplacian|, 1/m, at kGroundPercentiles
+    double relief_m = 0;                // highest less lowest
+    std::array<double, 7> slope_deg{};  // at kGroundPercentiles
+    std::array<double, 7> curvature{};  // |Laplacian|, 1/m, at kGroundPercentiles
 };
 
-struct ElevationMap { // row 0 at either end; samples dx, dy metres apart
+struct ElevationMap {  // row 0 at either end; samples dx, dy metres apart
     std::string name;
     int columns = 0, rows = 0;
     double dx_m = 1, dy_m = 1;
     std::vector<float> height_m;
 };
 
-// At samples `spacing_m` apart: finer maps are averaged over squares of that side first, coarser ones interpolated.
+// At samples `spacing_m` apart: finer maps are averaged over squares of that side first, coarser ones
+// interpolated.
 [[nodiscard]] GroundStatistics ground_statistics(const ElevationMap& map, double spacing_m);
 
 // The real maps of a folder that are known by name (dem_images.cpp), as many as are there.
@@ -36,6 +38,7 @@ struct ElevationMap { // row 0 at either end; samples dx, dy metres apart
 
 enum class BenchFormat { table, json };
 // Recipes and real grounds side by side, at 30 m and at 2 m. Says why when the real ones are missing.
-[[nodiscard]] Status bench_ground(const std::filesystem::path& elevation_folder, std::ostream& out, BenchFormat format);
+[[nodiscard]] Status bench_ground(const std::filesystem::path& elevation_folder, std::ostream& out,
+                                  BenchFormat format);
 
-} // namespace loam
+}  // namespace loam

@@ -1,7 +1,8 @@
-// The buffer that layer recipes draw on: height and albedo, wrapped at its edges, twice as fine as the layer so that blades
-// and stones get smooth edges when it is averaged down.
+// The buffer that layer recipes draw on: height and albedo, wrapped at its edges, twice as fine as the layer
+// so that blades and stones get smooth edges when it is averaged down.
 //
-// All lengths are in tile units (1 = the whole tile), heights too: the recipe does not know the size in texels.
+// All lengths are in tile units (1 = the whole tile), heights too: the recipe does not know the size in
+// texels.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +23,11 @@ class Canvas {
     struct Texel {
         float height = -1;
         float gloss = 0;
-        glm::vec3 albedo{0}; // linear
+        glm::vec3 albedo{0};  // linear
     };
-    [[nodiscard]] Texel& at(int i, int j) { return texels_[static_cast<size_t>(j & mask_) * size_ + (i & mask_)]; }
+    [[nodiscard]] Texel& at(int i, int j) {
+        return texels_[static_cast<size_t>(j & mask_) * size_ + (i & mask_)];
+    }
     // Sets every texel to f(u, v), 0 <= u, v < 1.
     template <typename F>
     void fill(F&& f) {
@@ -37,21 +40,23 @@ class Canvas {
     template <typename F>
     void around(float x, float y, float radius, F&& f) {
         const float n = static_cast<float>(size_);
-        const int reach = static_cast<int>(radius * n) + 1, ci = static_cast<int>(x * n), cj = static_cast<int>(y * n);
+        const int reach = static_cast<int>(radius * n) + 1, ci = static_cast<int>(x * n),
+                  cj = static_cast<int>(y * n);
         for (int j = cj - reach; j <= cj + reach; ++j)
             for (int i = ci - reach; i <= ci + reach; ++i)
                 f((static_cast<float>(i) + 0.5f) / n - x, (static_cast<float>(j) + 0.5f) / n - y, at(i, j));
     }
 
-    // A blade, needle or twig: from (x, y) in direction `angle`, bending by `bend` radians over its length, tapering.
+    // A blade, needle or twig: from (x, y) in direction `angle`, bending by `bend` radians over its length,
+    // tapering.
     struct Stroke {
         float x, y, angle, bend, length, width;
-        float root_height, tip_height; // and an arch between them
+        float root_height, tip_height;  // and an arch between them
         float arch = 0;
         glm::vec3 root_colour, tip_colour;
         float gloss = 0.3f;
-        float taper = 1; // 1: ends in a point, 0: blunt
-        float keel = 0;  // > 0: folded along the middle (grass), 0: round (twig)
+        float taper = 1;  // 1: ends in a point, 0: blunt
+        float keel = 0;   // > 0: folded along the middle (grass), 0: round (twig)
     };
     void draw(const Stroke& stroke);
 
@@ -60,7 +65,7 @@ class Canvas {
         float x, y, radius, bottom, thickness;
         glm::vec3 colour;
         float gloss = 0.25f;
-        float roundness = 0; // 0 angular, 1 a pebble
+        float roundness = 0;  // 0 angular, 1 a pebble
         uint32_t seed = 0;
     };
     void draw(const Stone& stone);
@@ -68,7 +73,7 @@ class Canvas {
     // A fallen leaf: outline with lobes, midrib and veins, curled and tilted.
     struct Leaf {
         float x, y, angle, length, width, bottom;
-        float lobes = 0; // 0: smooth outline; else lobes a side, as of an oak
+        float lobes = 0;  // 0: smooth outline; else lobes a side, as of an oak
         float curl = 0.2f;
         glm::vec3 colour;
         uint32_t seed = 0;
@@ -81,11 +86,11 @@ class Canvas {
 };
 
 struct Finish {
-    float relief = 1;          // heights are multiplied by this for normal and occlusion
-    float cavity = 0.45f;      // how much occlusion darkens the albedo (light bounced among grains)
-    float flatten = 0.85f;     // share of the brightness' blotches larger than 1/8 of the tile that is removed
-    glm::vec3 mean_albedo{0.2f}; // linear; the result's mean
-    float contrast = 1;        // of albedo around its mean
+    float relief = 1;       // heights are multiplied by this for normal and occlusion
+    float cavity = 0.45f;   // how much occlusion darkens the albedo (light bounced among grains)
+    float flatten = 0.85f;  // share of the brightness' blotches larger than 1/8 of the tile that is removed
+    glm::vec3 mean_albedo{0.2f};  // linear; the result's mean
+    float contrast = 1;           // of albedo around its mean
 };
 // Averages down, derives normal, occlusion and reveal, builds the mips.
 [[nodiscard]] LayerTextures finished(Canvas& canvas, const Finish& finish);
@@ -100,4 +105,4 @@ LayerTextures layer_rock(uint32_t seed, int size);
 LayerTextures layer_sand(uint32_t seed, int size);
 LayerTextures layer_snow(uint32_t seed, int size);
 
-} // namespace loam::recipe
+}  // namespace loam::recipe

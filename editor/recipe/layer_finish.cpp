@@ -1,4 +1,5 @@
-// From a canvas to a layer: everything that is derived from height, and the flattening that keeps repeats from showing.
+// From a canvas to a layer: everything that is derived from height, and the flattening that keeps repeats
+// from showing.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,7 +16,7 @@ using Plane = std::vector<float>;
 Plane blurred_wrapped(const Plane& source, int size, int radius) {
     Plane a = source, b(a.size());
     const auto at = [size](int i, int j) { return static_cast<size_t>(j) * size + (i & (size - 1)); };
-    for (int pass = 0; pass < 6; ++pass) { // rows into columns: two make one pass over both axes
+    for (int pass = 0; pass < 6; ++pass) {  // rows into columns: two make one pass over both axes
         for (int j = 0; j < size; ++j) {
             double sum = 0;
             for (int i = -radius; i <= radius; ++i) sum += a[at(i, j)];
@@ -44,8 +45,8 @@ Plane occlusion_of(const Plane& height_texel, int size) {
                 float steepest = 0;
                 for (const int reach : kReach) {
                     const int step = (k & 1) ? std::max(1, reach * 7 / 10) : reach;
-                    const float there =
-                        height_texel[static_cast<size_t>((j + kY[k] * step) & mask) * size + ((i + kX[k] * step) & mask)];
+                    const float there = height_texel[static_cast<size_t>((j + kY[k] * step) & mask) * size +
+                                                     ((i + kX[k] * step) & mask)];
                     steepest = std::max(steepest, (there - here) / (unit * static_cast<float>(step)));
                 }
                 open += 1.0f / (1.0f + steepest * steepest);
@@ -55,14 +56,16 @@ Plane occlusion_of(const Plane& height_texel, int size) {
     return out;
 }
 
-uint8_t byte(float v) { return static_cast<uint8_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f)); }
+uint8_t byte(float v) {
+    return static_cast<uint8_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f));
+}
 
 uint8_t srgb_byte(float linear) {
     linear = std::clamp(linear, 0.0f, 1.0f);
     return byte(linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f);
 }
 
-} // namespace
+}  // namespace
 
 LayerTextures finished(Canvas& canvas, const Finish& f) {
     const int n = canvas.size() / 2;
@@ -74,7 +77,7 @@ LayerTextures finished(Canvas& canvas, const Finish& f) {
             const size_t c = static_cast<size_t>(j) * n + i;
             for (int k = 0; k < 4; ++k) {
                 const Canvas::Texel& t = canvas.at(2 * i + (k & 1), 2 * j + (k >> 1));
-                height[c] += 0.25f * t.height * static_cast<float>(n) * f.relief; // now in texels
+                height[c] += 0.25f * t.height * static_cast<float>(n) * f.relief;  // now in texels
                 gloss[c] += 0.25f * t.gloss;
                 albedo[c] += 0.25f * t.albedo;
             }
@@ -94,7 +97,8 @@ LayerTextures finished(Canvas& canvas, const Finish& f) {
     }
     const glm::vec3 gain = f.mean_albedo / glm::vec3(mean);
 
-    // Reveal: heights between the 1st and the 99th percentile, without what is broader than a quarter of the tile.
+    // Reveal: heights between the 1st and the 99th percentile, without what is broader than a quarter of the
+    // tile.
     const Plane swell = blurred_wrapped(height, n, std::max(1, n / 8));
     Plane fine(count);
     for (size_t c = 0; c < count; ++c) fine[c] = height[c] - 0.7f * swell[c];
@@ -114,7 +118,9 @@ LayerTextures finished(Canvas& canvas, const Finish& f) {
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i) {
             const size_t c = static_cast<size_t>(j) * n + i;
-            const auto h = [&](int x, int y) { return height[static_cast<size_t>(y & (n - 1)) * n + (x & (n - 1))]; };
+            const auto h = [&](int x, int y) {
+                return height[static_cast<size_t>(y & (n - 1)) * n + (x & (n - 1))];
+            };
             const float dx = 0.5f * (h(i + 1, j) - h(i - 1, j)), dy = 0.5f * (h(i, j + 1) - h(i, j - 1));
             const float length = 1.0f / std::sqrt(1 + dx * dx + dy * dy);
             const glm::vec3 colour = f.mean_albedo + (albedo[c] * gain - f.mean_albedo) * f.contrast;
@@ -129,4 +135,4 @@ LayerTextures finished(Canvas& canvas, const Finish& f) {
     return out;
 }
 
-} // namespace loam::recipe
+}  // namespace loam::recipe

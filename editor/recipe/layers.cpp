@@ -13,11 +13,12 @@ namespace loam {
 namespace {
 
 using LayerFunction = LayerTextures (*)(uint32_t seed, int size);
-constexpr LayerFunction kFunctions[] = {recipe::layer_grass, recipe::layer_dry_grass, recipe::layer_forest_floor,
-                                        recipe::layer_dirt,  recipe::layer_scree,     recipe::layer_rock,
-                                        recipe::layer_sand,  recipe::layer_snow}; // as layer_recipe_names()
+constexpr LayerFunction kFunctions[] = {
+    recipe::layer_grass, recipe::layer_dry_grass, recipe::layer_forest_floor,
+    recipe::layer_dirt,  recipe::layer_scree,     recipe::layer_rock,
+    recipe::layer_sand,  recipe::layer_snow};  // as layer_recipe_names()
 
-} // namespace
+}  // namespace
 
 const std::vector<LayerRecipe>& layer_recipe_names() {
     static const std::vector<LayerRecipe> names = {
@@ -44,20 +45,23 @@ Result<LayerTextures> make_layer(std::string_view name, uint32_t seed, int size)
     return error("there is no layer recipe \"{}\"; there are {}", name, known);
 }
 
-Result<std::vector<LayerEntry>> make_layers_for(const std::filesystem::path& folder, uint32_t seed, int size) {
+Result<std::vector<LayerEntry>> make_layers_for(const std::filesystem::path& folder, uint32_t seed,
+                                                int size) {
     std::error_code code;
     std::filesystem::create_directories(folder / "layers", code);
     if (code) return error("cannot make folder {}: {}", (folder / "layers").string(), code.message());
     const auto& names = layer_recipe_names();
     std::vector<LayerEntry> entries;
-    for (const LayerRecipe& n : names) entries.push_back({n.name, "layers/" + std::string(n.name) + ".layer", n.tile_m});
+    for (const LayerRecipe& n : names)
+        entries.push_back({n.name, "layers/" + std::string(n.name) + ".layer", n.tile_m});
     std::vector<std::optional<Error>> faults(names.size());
     const int count = static_cast<int>(names.size());
     parallel_ranges(count, 1, [&](int begin, int end) {
         for (int k = begin; k < end; ++k) {
             const size_t at = static_cast<size_t>(k);
             auto textures = make_layer(names[at].name, seed, size);
-            const Status saved = textures ? save_layer(folder / entries[at].file, *textures) : Status(textures.error());
+            const Status saved =
+                textures ? save_layer(folder / entries[at].file, *textures) : Status(textures.error());
             if (!saved) faults[at] = saved.error();
         }
     });
@@ -66,4 +70,4 @@ Result<std::vector<LayerEntry>> make_layers_for(const std::filesystem::path& fol
     return entries;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,6 +1,7 @@
 #include "editor/recipe/make_project.h"
 
 #include <algorithm>
+#include <system_error>
 #include <vector>
 
 #include "editor/recipe/erosion.h"
@@ -13,24 +14,29 @@ namespace loam {
 
 namespace {
 
-constexpr int kRows = 128; // rows a write: a strip of pages at a time
+constexpr int kRows = 128;  // rows a write: a strip of pages at a time
 
 Status write_index(BulkWriter& writer, const IndexRequest& request, const Progress& progress) {
     const IndexPainter painter(request);
     std::vector<IndexTexel> rows(static_cast<size_t>(request.width) * kRows);
     for (int row = 0; row < request.height; row += kRows) {
-        LOAM_TRY(step_progress(progress, static_cast<double>(row) / request.height, "painting the index map"));
+        LOAM_TRY(
+            step_progress(progress, static_cast<double>(row) / request.height, "painting the index map"));
         const int count = std::min(kRows, request.height - row);
         painter.paint_rows(row, count, rows.data());
-        LOAM_TRY(writer.write_index_rows(row, count, {rows.data(), static_cast<size_t>(request.width) * count}));
+        LOAM_TRY(
+            writer.write_index_rows(row, count, {rows.data(), static_cast<size_t>(request.width) * count}));
     }
     return {};
 }
 
-} // namespace
+}  // namespace
 
-Status make_project(const std::filesystem::path& folder, const RecipeRequest& request, const Progress& progress,
-                    int layer_size_texels) {
+Status make_project(const std::filesystem::path& folder, const RecipeRequest& request,
+                    const Progress& progress, int layer_size_texels) {
+    std::error_code code;  // before a minute of erosion, and before another project's layers are overwritten
+    if (std::filesystem::exists(folder / "project.toml", code))
+        return error("{} already holds a project; choose another folder", folder.string());
     auto maps = make_ground(request, part_of(progress, 0, 0.45));
     if (!maps) return maps.error();
 
@@ -54,12 +60,17 @@ Status make_project(const std::filesystem::path& folder, const RecipeRequest& re
         const int count = std::min(kRows, maps->size - row);
         for (size_t k = 0; k < static_cast<size_t>(maps->size) * count; ++k)
             rows[k] = height_mm_from_m(maps->height_m[static_cast<size_t>(row) * maps->size + k]);
-        LOAM_TRY(writer.write_height_rows(row, count, {rows.data(), static_cast<size_t>(maps->size) * count}));
+        LOAM_TRY(
+            writer.write_height_rows(row, count, {rows.data(), static_cast<size_t>(maps->size) * count}));
     }
     const glm::ivec2 size = (*document)->index_size_texels();
     LOAM_TRY(write_index(writer,
-                         {.maps = &*maps, .climate = recipe_climate(request.name), .seed = request.seed,
-                          .spacing_m = settings.index_spacing_m, .width = size.x, .height = size.y},
+                         {.maps = &*maps,
+                          .climate = recipe_climate(request.name),
+                          .seed = request.seed,
+                          .spacing_m = settings.index_spacing_m,
+                          .width = size.x,
+                          .height = size.y},
                          part_of(progress, 0.7, 0.95)));
     LOAM_TRY(step_progress(progress, 0.95, "building mips"));
     LOAM_TRY(writer.finish());
@@ -69,10 +80,11 @@ Status make_project(const std::filesystem::path& folder, const RecipeRequest& re
 Status make_index_from_heights(Document& document, const Progress& progress) {
     const ProjectSettings settings = document.settings();
     if (settings.layers.size() < layer_recipe_names().size())
-        return error("the project has {} layers; the rules need the {} of the recipes", settings.layers.size(),
-                     layer_recipe_names().size());
+        return error("the project has {} layers; the rules need the {} of the recipes",
+                     settings.layers.size(), layer_recipe_names().size());
     LOAM_TRY(step_progress(progress, 0.0, "reading heights"));
-    // A square that covers the map (beyond its edge the nearest sample is read), of at most 2,101 samples a side.
+    // A square that covers the map (beyond its edge the nearest sample is read), of at most 2,101 samples a
+    // side.
     int mip = 0;
     const int longer = std::max(settings.height_samples_x, settings.height_samples_y);
     while (mip + 1 < document.height_mip_count() && ((longer - 1) >> mip) + 1 > 2101) ++mip;
@@ -85,7 +97,8 @@ Status make_index_from_heights(Document& document, const Progress& progress) {
         std::vector<int32_t> row(static_cast<size_t>(maps.size));
         for (int j = 0; j < maps.size; ++j) {
             document.read_heights_mm(mip, 0, j, maps.size, 1, row.data());
-            for (int i = 0; i < maps.size; ++i) height.at(i, j) = static_cast<float>(height_m_from_mm(row[static_cast<size_t>(i)]));
+            for (int i = 0; i < maps.size; ++i)
+                height.at(i, j) = static_cast<float>(height_m_from_mm(row[static_cast<size_t>(i)]));
         }
     }
     LOAM_TRY(step_progress(progress, 0.1, "following the water"));
@@ -102,11 +115,15 @@ Status make_index_from_heights(Document& document, const Progress& progress) {
     const glm::ivec2 size = document.index_size_texels();
     BulkWriter writer(document);
     LOAM_TRY(write_index(writer,
-                         {.maps = &maps, .climate = Climate::alpine, .seed = 1, .spacing_m = settings.index_spacing_m,
-                          .width = size.x, .height = size.y},
+                         {.maps = &maps,
+                          .climate = Climate::alpine,
+                          .seed = 1,
+                          .spacing_m = settings.index_spacing_m,
+                          .width = size.x,
+                          .height = size.y},
                          part_of(progress, 0.3, 0.95)));
     LOAM_TRY(writer.finish());
     return step_progress(progress, 1.0, "index map made");
 }
 
-} // namespace loam
+}  // namespace loam

@@ -13,11 +13,11 @@ namespace loam {
 class Document;
 
 // `folder` must not hold a project yet (Document::create refuses).
-[[nodiscard]] Status make_project(const std::filesystem::path& folder, const RecipeRequest& request, const Progress& progress,
-                                  int layer_size_texels = kRecipeLayerSize);
+[[nodiscard]] Status make_project(const std::filesystem::path& folder, const RecipeRequest& request,
+                                  const Progress& progress, int layer_size_texels = kRecipeLayerSize);
 
-// Gives a document (an imported height map) the index map that the recipes' rules make of its heights. Its layers must be
-// those of layer_recipe_names(), in that order (make_layers_for).
+// Gives a document (an imported height map) the index map that the recipes' rules make of its heights. Its
+// layers must be those of layer_recipe_names(), in that order (make_layers_for).
 [[nodiscard]] Status make_index_from_heights(Document& document, const Progress& progress);
 
-} // namespace loam
+}  // namespace loam

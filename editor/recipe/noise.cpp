@@ -15,14 +15,14 @@ int wrapped(int v, int period) {
 
 // One of 16 directions at each lattice point: cheaper than a sine, and no axis is preferred.
 float gradient(int ix, int iy, float dx, float dy, uint32_t seed, int period_x, int period_y) {
-    static constexpr float kX[16] = {1, 0.9239f, 0.7071f, 0.3827f, 0, -0.3827f, -0.7071f, -0.9239f,
-                                     -1, -0.9239f, -0.7071f, -0.3827f, 0, 0.3827f, 0.7071f, 0.9239f};
+    static constexpr float kX[16] = {1,  0.9239f,  0.7071f,  0.3827f,  0, -0.3827f, -0.7071f, -0.9239f,
+                                     -1, -0.9239f, -0.7071f, -0.3827f, 0, 0.3827f,  0.7071f,  0.9239f};
     const uint32_t h = hash(static_cast<uint32_t>(wrapped(ix, period_x)) * 0x9e3779b1u ^
                             hash(static_cast<uint32_t>(wrapped(iy, period_y)) + seed * 0x85ebca77u));
     return kX[h & 15] * dx + kX[(h + 12) & 15] * dy;
 }
 
-} // namespace
+}  // namespace
 
 float noise_xy(float x, float y, uint32_t seed, int period_x, int period_y) {
     const float fx = std::floor(x), fy = std::floor(y);
@@ -31,10 +31,11 @@ float noise_xy(float x, float y, uint32_t seed, int period_x, int period_y) {
     const auto fade = [](float t) { return t * t * t * (t * (t * 6 - 15) + 10); };
     const float u = fade(dx), v = fade(dy);
     const auto corner = [&](int cx, int cy) {
-        return gradient(ix + cx, iy + cy, dx - static_cast<float>(cx), dy - static_cast<float>(cy), seed, period_x, period_y);
+        return gradient(ix + cx, iy + cy, dx - static_cast<float>(cx), dy - static_cast<float>(cy), seed,
+                        period_x, period_y);
     };
     const float south = mix(corner(0, 0), corner(1, 0), u), north = mix(corner(0, 1), corner(1, 1), u);
-    return mix(south, north, v) * 1.45f; // the extreme of the plain sum is about 0.7
+    return mix(south, north, v) * 1.45f;  // the extreme of the plain sum is about 0.7
 }
 
 float fractal(float x, float y, uint32_t seed, int octaves, float gain, int period) {
@@ -45,7 +46,7 @@ float fractal(float x, float y, uint32_t seed, int octaves, float gain, int peri
         amplitude *= gain;
         x *= 2, y *= 2, period *= 2;
     }
-    return sum / whole * 1.3f; // octaves seldom peak together
+    return sum / whole * 1.3f;  // octaves seldom peak together
 }
 
 float ridged(float x, float y, uint32_t seed, int octaves, int period) {
@@ -70,7 +71,8 @@ Cell cellular_xy(float x, float y, uint32_t seed, int period_x, int period_y) {
     float best_squared = 1e9f;
     for (int k = 0; k < 25; ++k) {
         const int cx = ix + k % 5 - 2, cy = iy + k / 5 - 2;
-        const uint32_t h = hash(static_cast<uint32_t>(wrapped(cx, period_x)), static_cast<uint32_t>(wrapped(cy, period_y)), seed);
+        const uint32_t h = hash(static_cast<uint32_t>(wrapped(cx, period_x)),
+                                static_cast<uint32_t>(wrapped(cy, period_y)), seed);
         ids[k] = h;
         px[k] = static_cast<float>(cx) + 0.5f + 0.84f * (unit_from_hash(h) - 0.5f) - x;
         py[k] = static_cast<float>(cy) + 0.5f + 0.84f * (unit_from_hash(hash(h)) - 0.5f) - y;
@@ -87,4 +89,4 @@ Cell cellular_xy(float x, float y, uint32_t seed, int period_x, int period_y) {
     return {std::sqrt(best_squared), std::max(border, 0.0f), -px[best], -py[best], ids[best]};
 }
 
-} // namespace loam::recipe
+}  // namespace loam::recipe

@@ -7,8 +7,9 @@
 
 namespace loam::recipe {
 
-// Uplift against streams, but with soil creep strong enough to round every crest: convex tops, concave hollows
-// (the two processes set the spacing of valleys; Perron, Kirchner, Dietrich 2009, on Gabilan Mesa itself).
+// Uplift against streams, but with soil creep strong enough to round every crest: convex tops, concave
+// hollows (the two processes set the spacing of valleys; Perron, Kirchner, Dietrich 2009, on Gabilan Mesa
+// itself).
 Result<Shape> shape_hills(const ShapeRequest& request, const Progress& progress) {
     const uint32_t seed = hash(request.seed, 13);
     const float side = static_cast<float>(request.side_m());
@@ -34,9 +35,14 @@ Result<Shape> shape_hills(const ShapeRequest& request, const Progress& progress)
             const Drainage drainage = route(height, spacing, Outlets::all_edges,
                                             hash(seed, static_cast<uint32_t>(level * 1000 + s)) | 1u);
             incise(height, drainage, spacing,
-                   {.uplift_m = level >= 2 ? 3.0f : 0.0f, .rate = level >= 2 ? 0.14f : 0.004f, .steepest = 0.7f,
-                     .strength = &strength});
-            creep(height, spacing, level == 3 ? 90.0f : level == 2 ? 40.0f : 6.0f); // m²: rounds crests over some 30 m in the coarse run
+                   {.uplift_m = level >= 2 ? 3.0f : 0.0f,
+                    .rate = level >= 2 ? 0.14f : 0.004f,
+                    .steepest = 0.7f,
+                    .strength = &strength});
+            creep(height, spacing,
+                  level == 3   ? 90.0f
+                  : level == 2 ? 40.0f
+                               : 6.0f);  // m²: rounds crests over some 30 m in the coarse run
         }
     }
     Shape shape{std::move(height), Grid(request.size)};
@@ -50,8 +56,9 @@ Result<Shape> shape_hills(const ShapeRequest& request, const Progress& progress)
     return shape;
 }
 
-// Trains of dunes across the wind: a gentle windward side, a slip face at the angle of repose, crest lines that wander, join
-// and end (the defects of W. Werner's "Eolian dunes", 1995, by noise on phase and height rather than by moving slabs).
+// Trains of dunes across the wind: a gentle windward side, a slip face at the angle of repose, crest lines
+// that wander, join and end (the defects of W. Werner's "Eolian dunes", 1995, by noise on phase and height
+// rather than by moving slabs).
 Result<Shape> shape_dunes(const ShapeRequest& request, const Progress& progress) {
     const uint32_t seed = hash(request.seed, 14);
     const float side = static_cast<float>(request.side_m());
@@ -61,9 +68,10 @@ Result<Shape> shape_dunes(const ShapeRequest& request, const Progress& progress)
         // Phase grows with the wind (+x); noise on it bends the crests into horns and saddles.
         const float phase = x / length + wander * fractal(x / (length * 5), y / (length * 2.6f), s, 2, 0.4f);
         const float t = phase - std::floor(phase);
-        constexpr float kCrest = 0.72f; // share of a wave that faces the wind
+        constexpr float kCrest = 0.72f;  // share of a wave that faces the wind
         const float up = t / kCrest, down = (1 - t) / (1 - kCrest);
-        const float profile = t < kCrest ? up * up * (3 - 2 * up) * 0.55f + 0.45f * up * up : down * (0.6f + 0.4f * down);
+        const float profile =
+            t < kCrest ? up * up * (3 - 2 * up) * 0.55f + 0.45f * up * up : down * (0.6f + 0.4f * down);
         const float tall = smooth_step(-0.55f, 0.75f, noise(x / (length * 3.1f), y / (length * 2.2f), s + 5));
         return profile * tall;
     };
@@ -73,8 +81,10 @@ Result<Shape> shape_dunes(const ShapeRequest& request, const Progress& progress)
                               const float turn = 0.35f * noise(x / (wave_m * 9), y / (wave_m * 9), seed + 9);
                               const float a = x + turn * wave_m, b = y - turn * 2 * wave_m;
                               return tall_m * (train(a, b, wave_m, seed, 1.1f) * 1.3f +
-                                               0.28f * train(a * 0.94f + b * 0.34f, b * 0.94f - a * 0.34f, wave_m * 0.31f, seed + 1, 0.9f)) +
-                                     0.35f * tall_m * fractal(x / (wave_m * 6), y / (wave_m * 6), seed + 2, 3);
+                                               0.28f * train(a * 0.94f + b * 0.34f, b * 0.94f - a * 0.34f,
+                                                             wave_m * 0.31f, seed + 1, 0.9f)) +
+                                     0.35f * tall_m *
+                                         fractal(x / (wave_m * 6), y / (wave_m * 6), seed + 2, 3);
                           }),
                 {}};
     LOAM_TRY(step_progress(progress, 0.4, "letting slip faces slide"));
@@ -89,7 +99,7 @@ Result<Shape> shape_dunes(const ShapeRequest& request, const Progress& progress)
     }
     LOAM_TRY(step_progress(progress, 0.6, "letting slip faces slide"));
     settle(shape.height_m, request.spacing_m, 0.62f, 60);
-    shape.deposit_m = Grid(request.size, 5.0f); // all of it is loose
+    shape.deposit_m = Grid(request.size, 5.0f);  // all of it is loose
     LOAM_TRY(step_progress(progress, 1.0, "ground shaped"));
     return shape;
 }
@@ -101,7 +111,8 @@ Result<Shape> shape_plain(const ShapeRequest& request, const Progress& progress)
     Shape shape{filled_by(request.size,
                           [&](float u, float v) {
                               const float x = u * side, y = v * side;
-                              return 6.0f * fractal(x / 900, y / 900, seed, 4) + 0.5f * fractal(x / 60, y / 60, seed + 1, 3) +
+                              return 6.0f * fractal(x / 900, y / 900, seed, 4) +
+                                     0.5f * fractal(x / 60, y / 60, seed + 1, 3) +
                                      0.06f * fractal(x / 6, y / 6, seed + 2, 2);
                           }),
                 Grid(request.size, 0.5f)};
@@ -109,4 +120,4 @@ Result<Shape> shape_plain(const ShapeRequest& request, const Progress& progress)
     return shape;
 }
 
-} // namespace loam::recipe
+}  // namespace loam::recipe

@@ -1,9 +1,10 @@
-// Valley and ridge: uplift against stream power from a coarse grid to the fine one, then what loose material does.
+// Valley and ridge: uplift against stream power from a coarse grid to the fine one, then what loose material
+// does.
 //
-// At the coarse grid (an eighth of the samples a side) the drainage network organises itself, which takes a hundred steps;
-// each finer grid inherits it and needs only the few that carve its own gullies (Cordonnier et al. 2016). Slopes follow
-// from the steepness ks = uplift / rate: a stream with catchment A settles at slope ks / sqrt(A), and everything whose
-// catchment is too small for that stands at the angle of failure.
+// At the coarse grid (an eighth of the samples a side) the drainage network organises itself, which takes a
+// hundred steps; each finer grid inherits it and needs only the few that carve its own gullies (Cordonnier et
+// al. 2016). Slopes follow from the steepness ks = uplift / rate: a stream with catchment A settles at slope
+// ks / sqrt(A), and everything whose catchment is too small for that stands at the angle of failure.
 #include <algorithm>
 #include <cmath>
 
@@ -15,11 +16,11 @@ namespace loam::recipe {
 namespace {
 
 struct MountainPlan {
-    Grid uplift;            // share, at the fine grid
-    Grid strength;          // of rock, about 0.6 … 1.6
-    Grid start_m;           // coarse ground to begin with
-    float steepness_m = 90; // ks
-    float fill_m = 14;      // of valley floors at a catchment of 1 km² (shares of the map's scale)
+    Grid uplift;             // share, at the fine grid
+    Grid strength;           // of rock, about 0.6 … 1.6
+    Grid start_m;            // coarse ground to begin with
+    float steepness_m = 90;  // ks
+    float fill_m = 14;       // of valley floors at a catchment of 1 km² (shares of the map's scale)
     Outlets outlets = Outlets::all_edges;
 };
 
@@ -32,9 +33,9 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
     while (coarsest > 0 && level_size(request.size, coarsest) < 33) --coarsest;
     Shape shape{resampled_linear(plan.start_m, level_size(request.size, coarsest)), {}};
     shape.deposit_m = Grid(shape.height_m.size);
-    static constexpr int kSteps[4] = {2, 5, 22, 110};       // of incision, fine to coarse
-    static constexpr double kShare[4] = {0.55, 0.2, 0.1, 0.0}; // of the time, where each level begins
-    const float scale = static_cast<float>(request.side_m() / 4096.0); // constants below were tuned at 4 km
+    static constexpr int kSteps[4] = {2, 5, 22, 110};           // of incision, fine to coarse
+    static constexpr double kShare[4] = {0.55, 0.2, 0.1, 0.0};  // of the time, where each level begins
+    const float scale = static_cast<float>(request.side_m() / 4096.0);  // constants below were tuned at 4 km
     for (int level = coarsest; level >= 0; --level) {
         const int size = level_size(request.size, level);
         const double spacing = request.side_m() / (size - 1);
@@ -42,20 +43,30 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
         if (size != shape.height_m.size) {
             shape.height_m = resampled(shape.height_m, size);
             shape.deposit_m = resampled_linear(shape.deposit_m, size);
-            if (level >= 1) bend(shape.height_m, request.seed + static_cast<uint32_t>(level), level == 2 ? 1.0f : 0.3f);
+            if (level >= 1)
+                bend(shape.height_m, request.seed + static_cast<uint32_t>(level), level == 2 ? 1.0f : 0.3f);
         }
-        const Grid uplift = resampled_linear(plan.uplift, size), strength = resampled_linear(plan.strength, size);
+        const Grid uplift = resampled_linear(plan.uplift, size),
+                   strength = resampled_linear(plan.strength, size);
         // What the coarser grid could not hold: rills and ribs, more where it is steep, none on the floors.
         const Grid slope = slope_of(shape.height_m, spacing);
         const float frequency = static_cast<float>(size - 1) / 14.0f;
         const Grid rough = filled_by(size, [&](float u, float v) {
-            return fractal(u * frequency, v * frequency, request.seed + 900u + static_cast<uint32_t>(level), 4, 0.6f);
+            return fractal(u * frequency, v * frequency, request.seed + 900u + static_cast<uint32_t>(level),
+                           4, 0.6f);
         });
         for (size_t c = 0; c < rough.v.size(); ++c)
-            shape.height_m.v[c] += rough.v[c] * dx * (0.035f + std::min(slope.v[c], 1.2f) * (level == 0 ? 0.26f : level == 3 ? 1.6f : 0.9f));
+            shape.height_m.v[c] += rough.v[c] * dx *
+                                   (0.035f + std::min(slope.v[c], 1.2f) * (level == 0   ? 0.26f
+                                                                           : level == 3 ? 1.6f
+                                                                                        : 0.9f));
 
         const int steps = coarsest == 0 ? 60 : kSteps[level];
-        Incision incision{.uplift_m = 0, .rate = 0.6f, .steepest = level >= 2 ? 0.5f : 0.8f, .uplift_share = &uplift, .strength = &strength};
+        Incision incision{.uplift_m = 0,
+                          .rate = 0.6f,
+                          .steepest = level >= 2 ? 0.5f : 0.8f,
+                          .uplift_share = &uplift,
+                          .strength = &strength};
         if (level == 2 && coarsest > 2) incision.rate = 0.15f;
         if (level == 1 && coarsest > 1) incision.rate = 0.04f;
         if (level == 0 && coarsest > 0) incision.rate = 0.02f;
@@ -67,18 +78,21 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
             const uint32_t wander = hash(request.seed, static_cast<uint32_t>(level * 1000 + s)) | 1u;
             const Drainage drainage = route(shape.height_m, spacing, plan.outlets, wander);
             incise(shape.height_m, drainage, spacing, incision);
-            if (level > 0) creep(shape.height_m, spacing, (level == 3 ? 1.5f : level == 2 ? 0.6f : 0.05f) * dx * dx);
+            if (level > 0)
+                creep(shape.height_m, spacing, (level == 3 ? 1.5f : level == 2 ? 0.6f : 0.05f) * dx * dx);
         }
         if (level == std::min(1, coarsest)) {
             LOAM_TRY(step_progress(progress, 0.4, "filling valley floors"));
             const Drainage drainage = route(shape.height_m, spacing, plan.outlets, request.seed | 1u);
-            fill_valleys(shape.height_m, shape.deposit_m, drainage, spacing, plan.fill_m * scale, 60000.0f * scale * scale);
+            fill_valleys(shape.height_m, shape.deposit_m, drainage, spacing, plan.fill_m * scale,
+                         60000.0f * scale * scale);
             // Old channels and bars: a floor is never a plane, and what flows over it needs somewhere to go.
             const Grid bars = filled_by(size, [&](float u, float v) {
                 return fractal(u * 26, v * 26, request.seed + 700u, 5, 0.5f);
             });
             for (size_t c = 0; c < bars.v.size(); ++c)
-                shape.height_m.v[c] += 2.2f * scale * bars.v[c] * std::min(shape.deposit_m.v[c] / (2 * scale), 1.0f);
+                shape.height_m.v[c] +=
+                    2.2f * scale * bars.v[c] * std::min(shape.deposit_m.v[c] / (2 * scale), 1.0f);
         }
         if (level <= 1) {
             LOAM_TRY(step_progress(progress, kShare[level] + 0.15, "laying fans and scree"));
@@ -88,7 +102,8 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
                                {.capacity = 0.05f * dx * dx, .pick_up = 0.3f, .deepest_m = 0.15f * dx});
             }
             weather(shape.height_m, shape.deposit_m, spacing,
-                    {.repose = 0.62f, .rock_limit = 0.72f, .crumble = 0.05f, .strength = &strength}, level == 1 ? 60 : 40);
+                    {.repose = 0.62f, .rock_limit = 0.72f, .crumble = 0.05f, .strength = &strength},
+                    level == 1 ? 60 : 40);
             creep(shape.height_m, spacing, (level == 1 ? 0.1f : 0.04f) * dx * dx);
         }
     }
@@ -102,7 +117,8 @@ Grid rock_strength(const ShapeRequest& request, uint32_t seed) {
     return filled_by(std::min(request.size, 1025), [&](float u, float v) {
         const float bend = fractal(u * 3, v * 3, seed, 4) * 0.22f;
         const float band = noise((u * 0.6f + v * 0.8f + bend) * bands, 0.5f, seed + 1);
-        return std::clamp(1.0f + 0.35f * band + 0.45f * fractal(u * 14, v * 14, seed + 2, 6, 0.65f), 0.6f, 1.7f);
+        return std::clamp(1.0f + 0.35f * band + 0.45f * fractal(u * 14, v * 14, seed + 2, 6, 0.65f), 0.6f,
+                          1.7f);
     });
 }
 
@@ -111,7 +127,7 @@ float steepness_at(double side_m, float at_4_km) {
     return at_4_km * static_cast<float>(std::pow(side_m / 4096.0, 0.75));
 }
 
-} // namespace
+}  // namespace
 
 void bend(Grid& height_m, uint32_t seed, float strength) {
     const Grid straight = height_m;
@@ -130,17 +146,20 @@ Result<Shape> shape_valley(const ShapeRequest& request, const Progress& progress
     const float relief = steepness_at(request.side_m(), 500.0f);
     // The main valley runs from the east edge to the west one on a winding line.
     const auto from_axis = [seed](float u, float v) {
-        const float axis = 0.46f + 0.13f * noise(u * 2.2f, 0.3f, seed) + 0.04f * noise(u * 6.0f, 7.3f, seed + 1);
+        const float axis =
+            0.46f + 0.13f * noise(u * 2.2f, 0.3f, seed) + 0.04f * noise(u * 6.0f, 7.3f, seed + 1);
         return std::fabs(v - axis);
     };
     MountainPlan plan;
     plan.uplift = filled_by(size, [&](float u, float v) {
-        const float warp_u = u + 0.09f * fractal(u * 3, v * 3, seed + 2, 3), warp_v = v + 0.09f * fractal(u * 3, v * 3, seed + 3, 3);
+        const float warp_u = u + 0.09f * fractal(u * 3, v * 3, seed + 2, 3),
+                    warp_v = v + 0.09f * fractal(u * 3, v * 3, seed + 3, 3);
         const float high = 0.45f + 0.85f * ridged(warp_u * 2.4f, warp_v * 2.4f, seed + 4, 4);
         return high * mix(0.05f, 1.0f, smooth_step(0.035f, 0.2f, from_axis(u, v))) * mix(0.75f, 1.15f, u);
     });
     plan.start_m = filled_by(size, [&](float u, float v) {
-        const float warp_u = u + 0.08f * fractal(u * 3, v * 3, seed + 2, 3), warp_v = v + 0.08f * fractal(u * 3, v * 3, seed + 3, 3);
+        const float warp_u = u + 0.08f * fractal(u * 3, v * 3, seed + 2, 3),
+                    warp_v = v + 0.08f * fractal(u * 3, v * 3, seed + 3, 3);
         const float high = ridged(warp_u * 3, warp_v * 3, seed + 5, 5);
         return relief * (0.35f * u + smooth_step(0.0f, 0.35f, from_axis(u, v)) * (0.5f + high));
     });
@@ -156,8 +175,9 @@ Result<Shape> shape_ridge(const ShapeRequest& request, const Progress& progress)
     const int size = std::min(request.size, 1025);
     const float relief = steepness_at(request.side_m(), 350.0f);
     const auto crest = [seed](float u, float v) {
-        const float axis = 0.5f + 0.12f * noise(u * 2.0f, 0.3f, seed) + 0.05f * noise(u * 5.0f, 2.3f, seed + 1);
-        return 1.0f - smooth_step(0.0f, v > axis ? 0.3f : 0.5f, std::fabs(v - axis)); // steep to the north
+        const float axis =
+            0.5f + 0.12f * noise(u * 2.0f, 0.3f, seed) + 0.05f * noise(u * 5.0f, 2.3f, seed + 1);
+        return 1.0f - smooth_step(0.0f, v > axis ? 0.3f : 0.5f, std::fabs(v - axis));  // steep to the north
     };
     MountainPlan plan;
     plan.uplift = filled_by(size, [&](float u, float v) {
@@ -172,4 +192,4 @@ Result<Shape> shape_ridge(const ShapeRequest& request, const Progress& progress)
     return carve(request, plan, progress);
 }
 
-} // namespace loam::recipe
+}  // namespace loam::recipe

@@ -1,5 +1,5 @@
-// Slow work on slopes: crumbling rock, sliding debris, creeping soil (erosion.h). Each step reads the state before it and
-// gathers, so that rows may run in any order.
+// Slow work on slopes: crumbling rock, sliding debris, creeping soil (erosion.h). Each step reads the state
+// before it and gathers, so that rows may run in any order.
 #include <algorithm>
 #include <cmath>
 
@@ -14,8 +14,8 @@ constexpr int kDx[8] = {1, 0, -1, 0, 1, -1, -1, 1};
 constexpr int kDy[8] = {0, 1, 0, -1, 1, 1, -1, -1};
 constexpr float kDistance[8] = {1, 1, 1, 1, 1.41421356f, 1.41421356f, 1.41421356f, 1.41421356f};
 
-// One step of debris sliding: of each sample, a share of the largest excess over the angle of repose goes to the lower
-// neighbours in proportion to their excess. `share[c]` is metres sent a metre of excess.
+// One step of debris sliding: of each sample, a share of the largest excess over the angle of repose goes to
+// the lower neighbours in proportion to their excess. `share[c]` is metres sent a metre of excess.
 void slide(Grid& height, Grid* debris, float spacing, float repose, Grid& share, Grid& next) {
     const int n = height.size;
     const auto excess = [&](int i, int j, int k) {
@@ -31,7 +31,8 @@ void slide(Grid& height, Grid* debris, float spacing, float repose, Grid& share,
                     const float e = excess(i, j, k);
                     if (e > 0) sum += e, most = std::max(most, e);
                 }
-                float moved = 0.25f * most; // a quarter: the sender falls as the receiver rises, without overshoot
+                float moved =
+                    0.25f * most;  // a quarter: the sender falls as the receiver rises, without overshoot
                 if (debris) moved = std::min(moved, debris->at(i, j));
                 share.at(i, j) = sum > 0 ? moved / sum : 0.0f;
             }
@@ -43,9 +44,12 @@ void slide(Grid& height, Grid* debris, float spacing, float repose, Grid& share,
                 for (int k = 0; k < 8; ++k) {
                     const int x = i + kDx[k], y = j + kDy[k];
                     if (!inside(x, y)) continue;
-                    const float fall = height.at(i, j) - height.at(x, y), limit = repose * spacing * kDistance[k];
-                    if (fall > limit) change -= share.at(i, j) * (fall - limit);
-                    else if (-fall > limit) change += share.at(x, y) * (-fall - limit);
+                    const float fall = height.at(i, j) - height.at(x, y),
+                                limit = repose * spacing * kDistance[k];
+                    if (fall > limit)
+                        change -= share.at(i, j) * (fall - limit);
+                    else if (-fall > limit)
+                        change += share.at(x, y) * (-fall - limit);
                 }
                 next.at(i, j) = change;
             }
@@ -59,11 +63,12 @@ void slide(Grid& height, Grid* debris, float spacing, float repose, Grid& share,
     });
 }
 
-} // namespace
+}  // namespace
 
 void settle(Grid& height_m, double spacing_m, float repose, int steps) {
     Grid share(height_m.size), next(height_m.size);
-    for (int s = 0; s < steps; ++s) slide(height_m, nullptr, static_cast<float>(spacing_m), repose, share, next);
+    for (int s = 0; s < steps; ++s)
+        slide(height_m, nullptr, static_cast<float>(spacing_m), repose, share, next);
 }
 
 void weather(Grid& height_m, Grid& debris_m, double spacing_m, const Weathering& w, int steps) {
@@ -71,7 +76,8 @@ void weather(Grid& height_m, Grid& debris_m, double spacing_m, const Weathering&
     Grid share(n), next(n);
     const float dx = static_cast<float>(spacing_m);
     for (int s = 0; s < steps; ++s) {
-        // Rock that stands too steep turns to debris where it is (no change of height); debris covers and protects it.
+        // Rock that stands too steep turns to debris where it is (no change of height); debris covers and
+        // protects it.
         parallel_ranges(n, 32, [&](int begin, int end) {
             for (int j = begin; j < end; ++j)
                 for (int i = 0; i < n; ++i) {
@@ -91,7 +97,8 @@ void weather(Grid& height_m, Grid& debris_m, double spacing_m, const Weathering&
 
 void creep(Grid& height_m, double spacing_m, float diffusivity_m2) {
     const float whole = static_cast<float>(diffusivity_m2 / (spacing_m * spacing_m));
-    const int steps = std::max(1, static_cast<int>(std::ceil(whole / 0.2f))); // 0.25 is where it becomes unstable
+    const int steps =
+        std::max(1, static_cast<int>(std::ceil(whole / 0.2f)));  // 0.25 is where it becomes unstable
     const float rate = whole / static_cast<float>(steps);
     Grid next(height_m.size);
     for (int s = 0; s < steps; ++s) {
@@ -99,8 +106,9 @@ void creep(Grid& height_m, double spacing_m, float diffusivity_m2) {
         parallel_ranges(height_m.size, 32, [&](int begin, int end) {
             for (int j = begin; j < end; ++j)
                 for (int i = 0; i <= last; ++i) {
-                    const float around = height_m.at(std::max(i - 1, 0), j) + height_m.at(std::min(i + 1, last), j) +
-                                         height_m.at(i, std::max(j - 1, 0)) + height_m.at(i, std::min(j + 1, last));
+                    const float around =
+                        height_m.at(std::max(i - 1, 0), j) + height_m.at(std::min(i + 1, last), j) +
+                        height_m.at(i, std::max(j - 1, 0)) + height_m.at(i, std::min(j + 1, last));
                     next.at(i, j) = height_m.at(i, j) + rate * (around - 4 * height_m.at(i, j));
                 }
         });
@@ -108,4 +116,4 @@ void creep(Grid& height_m, double spacing_m, float diffusivity_m2) {
     }
 }
 
-} // namespace loam::recipe
+}  // namespace loam::recipe
