@@ -8,15 +8,18 @@ namespace loam {
 namespace {
 
 MapShape shape_of(BaseMap map, int samples_x, int samples_y, double spacing_m) {
-    MapShape shape{.map = map, .samples_x = samples_x, .samples_y = samples_y, .spacing_m = spacing_m, .mip_count = 1};
-    while (std::max(shape.width(shape.mip_count - 1), shape.height(shape.mip_count - 1)) > kBasePageSide) ++shape.mip_count;
+    MapShape shape{
+        .map = map, .samples_x = samples_x, .samples_y = samples_y, .spacing_m = spacing_m, .mip_count = 1};
+    while (std::max(shape.width(shape.mip_count - 1), shape.height(shape.mip_count - 1)) > kBasePageSide)
+        ++shape.mip_count;
     return shape;
 }
 
-} // namespace
+}  // namespace
 
 MapShape height_shape(const ProjectSettings& settings) {
-    return shape_of(BaseMap::height, settings.height_samples_x, settings.height_samples_y, settings.height_spacing_m);
+    return shape_of(BaseMap::height, settings.height_samples_x, settings.height_samples_y,
+                    settings.height_spacing_m);
 }
 
 MapShape index_shape(const ProjectSettings& settings) {
@@ -81,4 +84,4 @@ uint64_t BasePages::cached_bytes() const {
     return bytes_;
 }
 
-} // namespace loam
+}  // namespace loam

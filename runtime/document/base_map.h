@@ -1,7 +1,8 @@
 // Base maps as samples: their shape over all mips, and a cache of decoded pages.
 //
-// Mip m holds every 2^m-th sample of mip 0 in both directions: sample i of mip m is sample i * 2^m of mip 0. A page that is all
-// default is not stored; its handle is null. Samples of a page beyond the map's edge are default.
+// Mip m holds every 2^m-th sample of mip 0 in both directions: sample i of mip m is sample i * 2^m of mip 0.
+// A page that is all default is not stored; its handle is null. Samples of a page beyond the map's edge are
+// default.
 #pragma once
 
 #include <array>
@@ -20,9 +21,9 @@ namespace loam {
 
 struct MapShape {
     BaseMap map = BaseMap::height;
-    int samples_x = 0, samples_y = 0; // of mip 0
+    int samples_x = 0, samples_y = 0;  // of mip 0
     double spacing_m = 1;
-    int mip_count = 1; // down to one page
+    int mip_count = 1;  // down to one page
 
     [[nodiscard]] int width(int mip) const { return ((samples_x - 1) >> mip) + 1; }
     [[nodiscard]] int height(int mip) const { return ((samples_y - 1) >> mip) + 1; }
@@ -36,7 +37,7 @@ struct MapShape {
 template <typename Sample>
 using BasePage = std::array<Sample, kBasePageSamples>;
 template <typename Sample>
-using PageHandle = std::shared_ptr<const BasePage<Sample>>; // null: all default
+using PageHandle = std::shared_ptr<const BasePage<Sample>>;  // null: all default
 
 // The codec of a map by the type of its samples.
 template <typename Sample>
@@ -60,10 +61,12 @@ inline Status decode_page(std::span<const uint8_t> blob, BasePage<IndexTexel>& p
     return decode_index_page(blob, page);
 }
 
-// Decoded pages of both maps, least recently used out first. Any thread; one lock over the cache, another over the database.
+// Decoded pages of both maps, least recently used out first. Any thread; one lock over the cache, another
+// over the database.
 class BasePages {
   public:
-    BasePages(PageStore store, size_t capacity_bytes) : capacity_bytes_(capacity_bytes), store_(std::move(store)) {}
+    BasePages(PageStore store, size_t capacity_bytes)
+        : capacity_bytes_(capacity_bytes), store_(std::move(store)) {}
 
     template <typename Sample>
     Result<PageHandle<Sample>> load(const PageKey& key);
@@ -92,7 +95,7 @@ class BasePages {
         size_t bytes = 0;
         std::list<int64_t>::iterator age;
     };
-    static constexpr size_t kEntryBytes = 128; // of an entry without page: list node, map node
+    static constexpr size_t kEntryBytes = 128;  // of an entry without page: list node, map node
     template <typename Sample>
     static size_t page_bytes(const PageHandle<Sample>& page) {
         return kEntryBytes + (page ? sizeof(BasePage<Sample>) : 0);
@@ -102,7 +105,7 @@ class BasePages {
 
     mutable std::mutex cache_mutex_;
     std::unordered_map<int64_t, Entry> entries_;
-    std::list<int64_t> ages_; // newest first
+    std::list<int64_t> ages_;  // newest first
     size_t bytes_ = 0;
     const size_t capacity_bytes_;
 
@@ -131,11 +134,11 @@ Result<PageHandle<Sample>> BasePages::load(const PageKey& key) {
     return page;
 }
 
-// A window of one mip, coordinates clamped to the map. `load(page_x, page_y)` gives a pointer to a page's samples or null
-// for a default one, and is called once a page.
+// A window of one mip, coordinates clamped to the map. `load(page_x, page_y)` gives a pointer to a page's
+// samples or null for a default one, and is called once a page.
 template <typename Sample, typename Load>
-void read_window(const MapShape& shape, int mip, int x0, int y0, int width, int height, const Sample& fallback, Load&& load,
-                 Sample* out) {
+void read_window(const MapShape& shape, int mip, int x0, int y0, int width, int height,
+                 const Sample& fallback, Load&& load, Sample* out) {
     const int last_x = shape.width(mip) - 1, last_y = shape.height(mip) - 1;
     const auto clamped = [](int v, int last) { return v < 0 ? 0 : (v > last ? last : v); };
     // End of the run of coordinates that fall in the page of `v`.
@@ -148,7 +151,8 @@ void read_window(const MapShape& shape, int mip, int x0, int y0, int width, int 
         const int y_end = run_end(y, y0 + height, last_y);
         for (int x = x0; x < x0 + width;) {
             const int x_end = run_end(x, x0 + width, last_x);
-            const int page_x = clamped(x, last_x) / kBasePageSide, page_y = clamped(y, last_y) / kBasePageSide;
+            const int page_x = clamped(x, last_x) / kBasePageSide,
+                      page_y = clamped(y, last_y) / kBasePageSide;
             const auto page = load(page_x, page_y);
             for (int j = y; j < y_end; ++j) {
                 Sample* row = out + size_t(j - y0) * size_t(width) + (x - x0);
@@ -164,4 +168,4 @@ void read_window(const MapShape& shape, int mip, int x0, int y0, int width, int 
     }
 }
 
-} // namespace loam
+}  // namespace loam

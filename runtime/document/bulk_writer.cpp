@@ -1,5 +1,5 @@
-// Whole maps, row by row. For every mip a band of 64 rows is kept; a full band is cut in pages, encoded on all cores and
-// written. Everything is one transaction, committed by `finish`.
+// Whole maps, row by row. For every mip a band of 64 rows is kept; a full band is cut in pages, encoded on
+// all cores and written. Everything is one transaction, committed by `finish`.
 #include <algorithm>
 #include <optional>
 
@@ -26,7 +26,8 @@ class MapWriter {
             const int row = next_row_ >> mip, width = shape_.width(mip);
             Sample* to = bands_[size_t(mip)].data() + size_t(row % kBasePageSide) * size_t(width);
             for (int x = 0; x < width; ++x) to[x] = samples[size_t(x) << mip];
-            if (row % kBasePageSide == kBasePageSide - 1 || row == shape_.height(mip) - 1) LOAM_TRY(write_band(mip, row));
+            if (row % kBasePageSide == kBasePageSide - 1 || row == shape_.height(mip) - 1)
+                LOAM_TRY(write_band(mip, row));
         }
         ++next_row_;
         return {};
@@ -38,7 +39,8 @@ class MapWriter {
 
   private:
     Status write_band(int mip, int last_row) {
-        const int width = shape_.width(mip), pages_x = shape_.pages_x(mip), rows = last_row % kBasePageSide + 1;
+        const int width = shape_.width(mip), pages_x = shape_.pages_x(mip),
+                  rows = last_row % kBasePageSide + 1;
         const Sample* band = bands_[size_t(mip)].data();
         std::vector<std::optional<std::vector<uint8_t>>> blobs{size_t(pages_x)};
         parallel_ranges(pages_x, 8, [&](int begin, int end) {
@@ -54,7 +56,8 @@ class MapWriter {
             }
         });
         for (int page_x = 0; page_x < pages_x; ++page_x)
-            LOAM_TRY(write_page(PageKey{shape_.map, mip, page_x, last_row / kBasePageSide}.packed(), blobs[size_t(page_x)]));
+            LOAM_TRY(write_page(PageKey{shape_.map, mip, page_x, last_row / kBasePageSide}.packed(),
+                                blobs[size_t(page_x)]));
         return {};
     }
 
@@ -73,29 +76,30 @@ class MapWriter {
     PageStore& store_;
     const MapShape shape_;
     const Sample fallback_;
-    const bool has_pages_; // of this map, before
+    const bool has_pages_;  // of this map, before
     std::vector<std::vector<Sample>> bands_;
     int next_row_ = 0;
     int64_t gained_ = 0;
 };
 
-} // namespace
+}  // namespace
 
 struct BulkWriter::Impl {
     Document::Impl& document;
     std::optional<MapWriter<int32_t>> heights;
     std::optional<MapWriter<IndexTexel>> texels;
-    bool open = false;   // the transaction is ours
-    bool broken = false; // an error came back: nothing more is taken
+    bool open = false;    // the transaction is ours
+    bool broken = false;  // an error came back: nothing more is taken
 
     Status begin() {
         if (broken) return error("the bulk write has failed before; nothing of it was kept");
         if (open) return {};
         LOAM_TRY(document.may_write());
         if (!document.heads.empty())
-            return error("the journal holds {} commands that could not be undone after a bulk write; "
-                         "import into a new project",
-                         document.heads.size());
+            return error(
+                "the journal holds {} commands that could not be undone after a bulk write; "
+                "import into a new project",
+                document.heads.size());
         LOAM_TRY(document.store.begin());
         open = document.bulk_writing = true;
         return {};
@@ -116,12 +120,15 @@ struct BulkWriter::Impl {
     }
 
     template <typename Sample>
-    Status add_rows(MapWriter<Sample>& writer, const char* map, int first_row, int row_count, std::span<const Sample> samples) {
+    Status add_rows(MapWriter<Sample>& writer, const char* map, int first_row, int row_count,
+                    std::span<const Sample> samples) {
         const MapShape& shape = writer.shape();
         if (first_row != writer.next_row())
-            return fail(error("{} row {} was given, {} comes next; rows go from south to north", map, first_row, writer.next_row()));
+            return fail(error("{} row {} was given, {} comes next; rows go from south to north", map,
+                              first_row, writer.next_row()));
         if (row_count < 0 || row_count > shape.samples_y - first_row)
-            return fail(error("{} {} rows from row {} on, the map has {}", row_count, map, first_row, shape.samples_y));
+            return fail(error("{} {} rows from row {} on, the map has {}", row_count, map, first_row,
+                              shape.samples_y));
         const size_t width = size_t(shape.samples_x);
         if (samples.size() != size_t(row_count) * width)
             return fail(error("{} {} samples for {} rows of {}", samples.size(), map, row_count, width));
@@ -135,7 +142,8 @@ struct BulkWriter::Impl {
     template <typename Sample>
     static Status complete(const std::optional<MapWriter<Sample>>& writer, const char* map) {
         if (!writer || writer->next_row() == writer->shape().samples_y) return {};
-        return error("only {} of {} {} rows were written", writer->next_row(), writer->shape().samples_y, map);
+        return error("only {} of {} {} rows were written", writer->next_row(), writer->shape().samples_y,
+                     map);
     }
 
     Status write_counts(const PageBalance& count) {
@@ -144,7 +152,8 @@ struct BulkWriter::Impl {
     }
 };
 
-BulkWriter::BulkWriter(Document& document) : impl_(new Impl{.document = *document.impl_, .heights = {}, .texels = {}}) {}
+BulkWriter::BulkWriter(Document& document)
+    : impl_(new Impl{.document = *document.impl_, .heights = {}, .texels = {}}) {}
 
 BulkWriter::~BulkWriter() {
     impl_->abandon();
@@ -153,20 +162,22 @@ BulkWriter::~BulkWriter() {
 Status BulkWriter::write_height_rows(int first_row, int row_count, std::span<const int32_t> mm) {
     LOAM_TRY(impl_->begin());
     if (!impl_->heights)
-        impl_->heights.emplace(impl_->document.store, impl_->document.height, impl_->document.settings.default_height_mm,
+        impl_->heights.emplace(impl_->document.store, impl_->document.height,
+                               impl_->document.settings.default_height_mm,
                                impl_->document.page_count.height != 0);
     if (std::all_of(mm.begin(), mm.end(), [](int32_t v) { return v == saturate_height_mm(v); }))
         return impl_->add_rows(*impl_->heights, "height", first_row, row_count, mm);
     std::vector<int32_t> saturated(mm.size());
     std::transform(mm.begin(), mm.end(), saturated.begin(), [](int32_t v) { return saturate_height_mm(v); });
-    return impl_->add_rows(*impl_->heights, "height", first_row, row_count, std::span<const int32_t>(saturated));
+    return impl_->add_rows(*impl_->heights, "height", first_row, row_count,
+                           std::span<const int32_t>(saturated));
 }
 
 Status BulkWriter::write_index_rows(int first_row, int row_count, std::span<const IndexTexel> texels) {
     LOAM_TRY(impl_->begin());
     if (!impl_->texels)
-        impl_->texels.emplace(impl_->document.store, impl_->document.index, default_texel(impl_->document.settings),
-                              impl_->document.page_count.index != 0);
+        impl_->texels.emplace(impl_->document.store, impl_->document.index,
+                              default_texel(impl_->document.settings), impl_->document.page_count.index != 0);
     if (!std::all_of(texels.begin(), texels.end(), [](const IndexTexel& t) { return t.unused == 0; }))
         return impl_->fail(error("the unused byte of an index texel must be 0"));
     return impl_->add_rows(*impl_->texels, "index", first_row, row_count, texels);
@@ -174,7 +185,8 @@ Status BulkWriter::write_index_rows(int first_row, int row_count, std::span<cons
 
 Status BulkWriter::finish() {
     LOAM_TRY(impl_->begin());
-    for (const Status& status : {Impl::complete(impl_->heights, "height"), Impl::complete(impl_->texels, "index")})
+    for (const Status& status :
+         {Impl::complete(impl_->heights, "height"), Impl::complete(impl_->texels, "index")})
         if (!status.ok()) return impl_->fail(status);
     Document::Impl& document = impl_->document;
     PageBalance count = document.page_count;
@@ -197,4 +209,4 @@ Status BulkWriter::finish() {
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

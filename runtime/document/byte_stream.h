@@ -1,4 +1,5 @@
-// Little-endian bytes out and in. The reader never leaves its span: past the end it gives zeros and is no longer ok().
+// Little-endian bytes out and in. The reader never leaves its span: past the end it gives zeros and is no
+// longer ok().
 #pragma once
 
 #include <bit>
@@ -58,4 +59,4 @@ class ByteReader {
     bool ok_ = true;
 };
 
-} // namespace loam
+}  // namespace loam

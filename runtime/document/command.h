@@ -1,9 +1,9 @@
-// Commands: plain data, one JSON object a line. The window's tools, the Python module, the command line and the
-// journal all make these.
+// Commands: plain data, one JSON object a line. The window's tools, the Python module, the command line and
+// the journal all make these.
 //
 //   {"cmd":"sculpt","mode":"raise","dabs":[[x,y],…],"radius_m":10,"strength_m":0.5,"hardness":0.5}
-//       modes: raise, lower (strength_m a dab), smooth, flatten (strength 0…1; flatten has "target_m"); either
-//       name of the strength is read in any mode
+//       modes: raise, lower (strength_m a dab), smooth, flatten (strength 0…1; flatten has "target_m");
+//       either name of the strength is read in any mode
 //   {"cmd":"paint","dabs":[[x,y],…],"radius_m":5,"layer":"rock","strength":1,"hardness":0.5,"seed":1,
 //    "min_slope_rad":0,"max_slope_rad":1.5708,"tint":[r,g,b]}   ("layer" or "tint" or both)
 //   {"cmd":"crater","x":…,"y":…,"radius_m":10,"depth_m":4,"seed":7}
@@ -11,8 +11,8 @@
 //       a print may have its own length_m, depth_m and seed; else print i has seed + i
 //   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}
 //   {"cmd":"undo"}    {"cmd":"redo"}
-// Required: mode and dabs; target_m to flatten; layer or tint; x and y; prints; id and enabled. The rest have the defaults below.
-// Any command may carry "group": n. Consecutive commands of one group undo together.
+// Required: mode and dabs; target_m to flatten; layer or tint; x and y; prints; id and enabled. The rest have
+// the defaults below. Any command may carry "group": n. Consecutive commands of one group undo together.
 #pragma once
 
 #include <optional>
@@ -44,8 +44,8 @@ struct PaintCommand {
     std::vector<glm::dvec2> dabs;
     double radius_m = 5;
     std::optional<std::string> layer;
-    std::optional<glm::dvec3> tint; // sRGB-encoded 0…1
-    double strength = 1;   // share of texels (layer, dithered by position and seed) or of the tint
+    std::optional<glm::dvec3> tint;  // sRGB-encoded 0…1
+    double strength = 1;             // share of texels (layer, dithered by position and seed) or of the tint
     double hardness = 0.5;
     double min_slope_rad = 0, max_slope_rad = 1.5707963267948966;
     uint32_t seed = 0;
@@ -67,15 +67,16 @@ struct RemoveOperatorCommand {
 struct UndoCommand {};
 struct RedoCommand {};
 
-using CommandBody = std::variant<SculptCommand, PaintCommand, CraterCommand, FootprintsCommand, SetOperatorCommand,
-                                 RemoveOperatorCommand, UndoCommand, RedoCommand>;
+using CommandBody = std::variant<SculptCommand, PaintCommand, CraterCommand, FootprintsCommand,
+                                 SetOperatorCommand, RemoveOperatorCommand, UndoCommand, RedoCommand>;
 
 struct Command {
     CommandBody body;
-    uint64_t group = 0; // 0: a group of its own
+    uint64_t group = 0;  // 0: a group of its own
 };
 
-// One line of JSON. Unknown commands, unknown keys, missing or non-finite numbers are refused with what and where.
+// One line of JSON. Unknown commands, unknown keys, missing or non-finite numbers are refused with what and
+// where.
 [[nodiscard]] Result<Command> parse_command(std::string_view json_line);
 // Reading the text back gives the same command, numbers bit for bit.
 [[nodiscard]] std::string to_json(const Command& command);
@@ -85,4 +86,4 @@ struct Command {
 // Brush falloff, 1 at the centre to 0 at the rim; `t` = distance / radius. Smooth (C1) for any hardness.
 [[nodiscard]] double brush_falloff(double t, double hardness);
 
-} // namespace loam
+}  // namespace loam

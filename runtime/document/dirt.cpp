@@ -12,11 +12,11 @@ double area(const WorldRect& rect) {
     return rect.empty() ? 0 : rect.width() * rect.height();
 }
 
-// Joins neighbours in the list until nothing more joins. Looking back a few places only keeps it linear; pages come row by
-// row, so that what touches is near.
+// Joins neighbours in the list until nothing more joins. Looking back a few places only keeps it linear;
+// pages come row by row, so that what touches is near.
 void join_near(std::vector<WorldRect>& rects) {
     constexpr size_t kLookBack = 24;
-    constexpr double kGrowth = 1.2; // a joined rectangle may cover this much more than both
+    constexpr double kGrowth = 1.2;  // a joined rectangle may cover this much more than both
     size_t before = 0;
     do {
         before = rects.size();
@@ -47,7 +47,7 @@ void join_best_pair(std::vector<WorldRect>& rects) {
     rects.erase(rects.begin() + std::ptrdiff_t(best_b));
 }
 
-} // namespace
+}  // namespace
 
 void merge_rects(std::vector<WorldRect>& rects, size_t most) {
     std::erase_if(rects, [](const WorldRect& rect) { return rect.empty(); });
@@ -95,4 +95,4 @@ Result<Dirt> dirt_of(std::span<const uint8_t> bytes) {
     return dirt;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -11,7 +11,8 @@
 
 namespace loam {
 
-// The same area or a little more with at most `most` rectangles: joins those that hardly grow by it, then the best pairs.
+// The same area or a little more with at most `most` rectangles: joins those that hardly grow by it, then the
+// best pairs.
 void merge_rects(std::vector<WorldRect>& rects, size_t most);
 
 void append_dirt(Dirt& to, const Dirt& more);
@@ -19,4 +20,4 @@ void append_dirt(Dirt& to, const Dirt& more);
 [[nodiscard]] std::vector<uint8_t> dirt_bytes(const Dirt& dirt);
 [[nodiscard]] Result<Dirt> dirt_of(std::span<const uint8_t> bytes);
 
-} // namespace loam
+}  // namespace loam

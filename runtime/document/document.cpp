@@ -22,18 +22,20 @@ std::vector<std::pair<std::string, int64_t>> identity_of(const ProjectSettings& 
 }
 
 template <typename Sample>
-void read_base(BasePages& pages, const MapShape& shape, const Sample& fallback, int mip, const TexelRect& window, Sample* out) {
+void read_base(BasePages& pages, const MapShape& shape, const Sample& fallback, int mip,
+               const TexelRect& window, Sample* out) {
     LOAM_CHECK(mip >= 0 && mip < shape.mip_count, fmt::format("mip {} of {}", mip, shape.mip_count));
     PageHandle<Sample> keep;
-    read_window(shape, mip, window.x0, window.y0, window.width(), window.height(), fallback,
-                [&](int page_x, int page_y) -> const BasePage<Sample>* {
-                    auto page = pages.load<Sample>({shape.map, mip, page_x, page_y});
-                    // A damaged page reads as default; commands that would overwrite it are refused (PageEdits).
-                    if (!page.ok()) log(LogLevel::error, "{}", page.message());
-                    keep = page.ok() ? *page : nullptr;
-                    return keep.get();
-                },
-                out);
+    read_window(
+        shape, mip, window.x0, window.y0, window.width(), window.height(), fallback,
+        [&](int page_x, int page_y) -> const BasePage<Sample>* {
+            auto page = pages.load<Sample>({shape.map, mip, page_x, page_y});
+            // A damaged page reads as default; commands that would overwrite it are refused (PageEdits).
+            if (!page.ok()) log(LogLevel::error, "{}", page.message());
+            keep = page.ok() ? *page : nullptr;
+            return keep.get();
+        },
+        out);
 }
 
 Result<uint64_t> meta_or(PageStore& store, const char* name, uint64_t otherwise) {
@@ -43,7 +45,7 @@ Result<uint64_t> meta_or(PageStore& store, const char* name, uint64_t otherwise)
 }
 
 uint64_t digest_of(uint64_t hash, std::span<const uint8_t> bytes) {
-    for (const uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3ull; // FNV-1a
+    for (const uint8_t byte : bytes) hash = (hash ^ byte) * 0x100000001b3ull;  // FNV-1a
     return hash;
 }
 uint64_t digest_of(uint64_t hash, uint64_t number) {
@@ -51,7 +53,7 @@ uint64_t digest_of(uint64_t hash, uint64_t number) {
     return hash;
 }
 
-} // namespace
+}  // namespace
 
 Status write_identity(PageStore& store, const ProjectSettings& settings) {
     for (const auto& [name, value] : identity_of(settings)) LOAM_TRY(store.write_meta(name, value));
@@ -64,14 +66,16 @@ Status check_identity(PageStore& store, const ProjectSettings& settings) {
         if (!stored.ok()) return stored.error();
         if (!stored->has_value()) return error("terrain.db does not say its {}; it is damaged", name);
         if (**stored != value)
-            return error("project.toml and terrain.db disagree about {}: the terrain was made with another value; "
-                         "restore project.toml",
-                         name);
+            return error(
+                "project.toml and terrain.db disagree about {}: the terrain was made with another value; "
+                "restore project.toml",
+                name);
     }
     return {};
 }
 
-Result<std::unique_ptr<Document>> Document::create(const std::filesystem::path& folder, const ProjectSettings& settings) {
+Result<std::unique_ptr<Document>> Document::create(const std::filesystem::path& folder,
+                                                   const ProjectSettings& settings) {
     LOAM_TRY(check_settings(settings));
     std::error_code failure;
     for (const char* file : {"project.toml", "terrain.db"})
@@ -92,7 +96,7 @@ Result<std::unique_ptr<Document>> Document::create(const std::filesystem::path& 
             return identity;
         }
         LOAM_TRY(store->commit());
-        return save_project(folder, settings); // last: a folder with a project.toml has a database
+        return save_project(folder, settings);  // last: a folder with a project.toml has a database
     };
     const Status status = fill();
     if (!status.ok()) {
@@ -146,8 +150,9 @@ Status Document::Impl::load() {
             if (!stored.ok()) return stored.error();
             *value = *stored;
         }
-        for (const auto& [name, value] : {std::pair<const char*, int64_t*>{"height_pages", &page_count.height},
-                                          {"index_pages", &page_count.index}}) {
+        for (const auto& [name, value] :
+             {std::pair<const char*, int64_t*>{"height_pages", &page_count.height},
+              {"index_pages", &page_count.index}}) {
             const auto stored = meta_or(reader, name, 0);
             if (!stored.ok()) return stored.error();
             *value = int64_t(*stored);
@@ -198,11 +203,12 @@ Result<std::vector<Document::HistoryEntry>> Document::history(int newest_count) 
     if (heads.empty() || newest_count <= 0) return entries;
     const size_t count = std::min(heads.size(), size_t(newest_count));
     const Status status = impl_->pages->with_store([&](PageStore& reader) {
-        return reader.for_each_journal(heads[heads.size() - count].sequence, PageStore::JournalColumns::text,
-                                       [&](const JournalRow& row) {
-                                           entries.push_back({row.sequence, row.group, row.applied, row.json});
-                                           return Status();
-                                       });
+        return reader.for_each_journal(
+            heads[heads.size() - count].sequence, PageStore::JournalColumns::text,
+            [&](const JournalRow& row) {
+                entries.push_back({row.sequence, row.group, row.applied, row.json});
+                return Status();
+            });
     });
     if (!status.ok()) return status.error();
     std::reverse(entries.begin(), entries.end());
@@ -231,8 +237,8 @@ void Document::read_heights_mm(int mip, int x0, int y0, int width, int height, i
               TexelRect{x0, y0, x0 + width, y0 + height}, out);
 }
 void Document::read_index(int mip, int x0, int y0, int width, int height, IndexTexel* out) const {
-    read_base(*impl_->pages, impl_->index, default_texel(impl_->settings), mip, TexelRect{x0, y0, x0 + width, y0 + height},
-              out);
+    read_base(*impl_->pages, impl_->index, default_texel(impl_->settings), mip,
+              TexelRect{x0, y0, x0 + width, y0 + height}, out);
 }
 int Document::height_mip_count() const {
     return impl_->height.mip_count;
@@ -290,7 +296,8 @@ Result<uint64_t> Document::content_digest() const {
             return Status();
         }));
         return reader.for_each_operator([&](uint64_t id, const std::string& json) {
-            digest = digest_of(digest_of(digest, id), {reinterpret_cast<const uint8_t*>(json.data()), json.size()});
+            digest = digest_of(digest_of(digest, id),
+                               {reinterpret_cast<const uint8_t*>(json.data()), json.size()});
             return Status();
         });
     });
@@ -298,4 +305,4 @@ Result<uint64_t> Document::content_digest() const {
     return digest;
 }
 
-} // namespace loam
+}  // namespace loam

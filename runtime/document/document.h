@@ -1,13 +1,15 @@
 // The Document: base maps, operators, journal. The only way to change it is `apply`; everybody else reads.
 //
 // Invariants
-//  1. A command is one transaction of terrain.db: after a crash every command whose `apply` returned is there, and
+//  1. A command is one transaction of terrain.db: after a crash every command whose `apply` returned is
+//  there, and
 //     nothing half-done.
 //  2. `undo` then `redo` (and the other way) restore pages, operators and journal bit for bit.
 //  3. A mip-m sample of a base map equals the mip-0 sample at the same place.
-//  4. Reads may come from any thread; `apply`, `undo`, `redo` and `BulkWriter` from one thread at a time. A reader sees the
-//     state before or after a command, never between (hold a ReadLock over several reads that must agree). While a
-//     command is made visible readers wait; hold a ReadLock for milliseconds, not for a frame.
+//  4. Reads may come from any thread; `apply`, `undo`, `redo` and `BulkWriter` from one thread at a time. A
+//  reader sees the
+//     state before or after a command, never between (hold a ReadLock over several reads that must agree).
+//     While a command is made visible readers wait; hold a ReadLock for milliseconds, not for a frame.
 #pragma once
 
 #include <cstdint>
@@ -25,11 +27,13 @@
 
 namespace loam {
 
-// World rectangles that a change touched, per map: at most 64, 8 for a stroke, possibly overlapping. Everything that interpolates
-// base samples as described here and lies outside of them is as before.
-//  - height: the changed samples grown by 2 base spacings, as the height map interpolates bicubically (4x4 samples).
+// World rectangles that a change touched, per map: at most 64, 8 for a stroke, possibly overlapping.
+// Everything that interpolates base samples as described here and lies outside of them is as before.
+//  - height: the changed samples grown by 2 base spacings, as the height map interpolates bicubically (4x4
+//  samples).
 //  - index: the changed texels grown by 1 spacing (nearest or bilinear).
-//  - where a changed sample lies on the map's edge the rectangle goes on 65,536 m outwards, as all reads beyond the edge give
+//  - where a changed sample lies on the map's edge the rectangle goes on 65,536 m outwards, as all reads
+//  beyond the edge give
 //    the nearest sample inside.
 //  - operators: their bounds in the map (operator.h), exactly.
 // `texture` holds what is drawn into the texture only (decals);
@@ -43,29 +47,31 @@ enum class OpenMode { read_write, read_only };
 
 class Document {
   public:
-    static Result<std::unique_ptr<Document>> create(const std::filesystem::path& folder, const ProjectSettings& settings);
-    static Result<std::unique_ptr<Document>> open(const std::filesystem::path& folder, OpenMode mode = OpenMode::read_write);
+    static Result<std::unique_ptr<Document>> create(const std::filesystem::path& folder,
+                                                    const ProjectSettings& settings);
+    static Result<std::unique_ptr<Document>> open(const std::filesystem::path& folder,
+                                                  OpenMode mode = OpenMode::read_write);
     ~Document();
     Document(const Document&) = delete;
 
     [[nodiscard]] const std::filesystem::path& folder() const;
     [[nodiscard]] const ProjectSettings& settings() const;
     [[nodiscard]] WorldRect bounds() const { return settings().bounds(); }
-    [[nodiscard]] uint64_t revision() const; // grows with every change
+    [[nodiscard]] uint64_t revision() const;  // grows with every change
 
     // Undo and redo commands are applied by `apply` as well.
     Result<Dirt> apply(const Command& command);
-    Result<Dirt> undo(); // error "nothing to undo" when there is nothing
+    Result<Dirt> undo();  // error "nothing to undo" when there is nothing
     Result<Dirt> redo();
     [[nodiscard]] bool can_undo() const;
     [[nodiscard]] bool can_redo() const;
     struct HistoryEntry {
         uint64_t sequence = 0, group = 0;
         bool applied = true;
-        std::string json; // the command
+        std::string json;  // the command
     };
-    [[nodiscard]] Result<std::vector<HistoryEntry>> history(int newest_count) const; // newest first
-    [[nodiscard]] uint64_t next_group(); // a fresh group number for a stroke
+    [[nodiscard]] Result<std::vector<HistoryEntry>> history(int newest_count) const;  // newest first
+    [[nodiscard]] uint64_t next_group();  // a fresh group number for a stroke
 
     // Settings that may change later (sun, haze, layer list): writes project.toml.
     Status change_settings(const ProjectSettings& settings);
@@ -73,21 +79,23 @@ class Document {
     // --- reads ---
     using ReadLock = std::shared_lock<std::shared_mutex>;
     [[nodiscard]] ReadLock read_lock() const;
-    // Base samples of a mip, coordinates in that mip's samples; outside the map the nearest sample inside. The caller
-    // holds a ReadLock.
+    // Base samples of a mip, coordinates in that mip's samples; outside the map the nearest sample inside.
+    // The caller holds a ReadLock.
     void read_heights_mm(int mip, int x0, int y0, int width, int height, int32_t* out) const;
     void read_index(int mip, int x0, int y0, int width, int height, IndexTexel* out) const;
-    [[nodiscard]] int height_mip_count() const; // down to one page
+    [[nodiscard]] int height_mip_count() const;  // down to one page
     [[nodiscard]] int index_mip_count() const;
-    // Of mip 0. Texel (i, j) stands at world (i, j) * index_spacing_m, as height samples do; the last ones at or beyond bounds().
+    // Of mip 0. Texel (i, j) stands at world (i, j) * index_spacing_m, as height samples do; the last ones at
+    // or beyond bounds().
     [[nodiscard]] glm::ivec2 index_size_texels() const;
-    // Enabled operators whose bounds in the map overlap, in order of evaluation. Valid while the ReadLock is held.
+    // Enabled operators whose bounds in the map overlap, in order of evaluation. Valid while the ReadLock is
+    // held.
     void operators_over_height(const WorldRect& rect, std::vector<const Operator*>& out) const;
     void operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const;
     void operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const;
-    [[nodiscard]] std::vector<Operator> operators() const; // a copy, in order (outliner, info)
+    [[nodiscard]] std::vector<Operator> operators() const;  // a copy, in order (outliner, info)
     [[nodiscard]] ResolvedRoles roles() const;
-    [[nodiscard]] int layer_index(std::string_view name) const; // -1: no such layer
+    [[nodiscard]] int layer_index(std::string_view name) const;  // -1: no such layer
 
     struct Statistics {
         uint64_t height_pages = 0, index_pages = 0, database_bytes = 0, operators = 0, commands = 0;
@@ -107,8 +115,10 @@ class Document {
     std::unique_ptr<Impl> impl_;
 };
 
-// Writes whole maps (import, recipes) without journal: rows south to north, any number at a time, from row 0 to the last; a map of
-// which no row was given stays as it is. `finish` builds the mips and commits. Commands are refused meanwhile. Dropped without `finish`: nothing changed. Refused when the journal holds commands (they could not be undone).
+// Writes whole maps (import, recipes) without journal: rows south to north, any number at a time, from row 0
+// to the last; a map of which no row was given stays as it is. `finish` builds the mips and commits. Commands
+// are refused meanwhile. Dropped without `finish`: nothing changed. Refused when the journal holds commands
+// (they could not be undone).
 class BulkWriter {
   public:
     explicit BulkWriter(Document& document);
@@ -122,4 +132,4 @@ class BulkWriter {
     std::unique_ptr<Impl> impl_;
 };
 
-} // namespace loam
+}  // namespace loam

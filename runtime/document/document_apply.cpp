@@ -1,4 +1,5 @@
-// Commands: compute on copies, one transaction, then show it. Undo and redo: the same swap of rows and images.
+// Commands: compute on copies, one transaction, then show it. Undo and redo: the same swap of rows and
+// images.
 #include <algorithm>
 
 #include "runtime/base/log.h"
@@ -12,19 +13,21 @@ namespace loam {
 
 namespace {
 
-// Readers outside the map see its nearest sample, so a changed sample at the edge changes all that lies beyond it. Farther
-// than twice the largest map no page reaches.
+// Readers outside the map see its nearest sample, so a changed sample at the edge changes all that lies
+// beyond it. Farther than twice the largest map no page reaches.
 constexpr double kBeyond_m = 65536;
 
 // World rectangles that changed samples influence: `reach` spacings around them.
-std::vector<WorldRect> dirt_of_samples(const MapShape& shape, const std::vector<TexelRect>& changed, int reach) {
+std::vector<WorldRect> dirt_of_samples(const MapShape& shape, const std::vector<TexelRect>& changed,
+                                       int reach) {
     std::vector<WorldRect> rects;
     for (const TexelRect& r : changed)
-        rects.push_back(WorldRect{r.x0 * shape.spacing_m, r.y0 * shape.spacing_m, (r.x1 - 1) * shape.spacing_m,
-                                  (r.y1 - 1) * shape.spacing_m}
+        rects.push_back(WorldRect{r.x0 * shape.spacing_m, r.y0 * shape.spacing_m,
+                                  (r.x1 - 1) * shape.spacing_m, (r.y1 - 1) * shape.spacing_m}
                             .grown(reach * shape.spacing_m));
     merge_rects(rects, kMaxStrokeRects);
-    const double east = (shape.samples_x - 1) * shape.spacing_m, north = (shape.samples_y - 1) * shape.spacing_m;
+    const double east = (shape.samples_x - 1) * shape.spacing_m,
+                 north = (shape.samples_y - 1) * shape.spacing_m;
     const double near_edge = (reach - 0.5) * shape.spacing_m;
     for (WorldRect& rect : rects) {
         if (rect.min_x <= -near_edge) rect.min_x = -kBeyond_m;
@@ -45,7 +48,7 @@ void merge_dirt(Dirt& dirt, size_t most) {
     merge_rects(dirt.texture, most);
 }
 
-} // namespace
+}  // namespace
 
 Status Document::Impl::compute(const SculptCommand& command, Change& change) {
     change.heights.emplace(*pages, height, settings.default_height_mm);
@@ -55,7 +58,7 @@ Status Document::Impl::compute(const SculptCommand& command, Change& change) {
     if (!result.ok()) return result.error();
     change.height_changes = std::move(*result);
     add_page_images(change.height_changes, change.images);
-    change.dirt.height = dirt_of_samples(height, changed, 2); // bicubic: two samples on either side
+    change.dirt.height = dirt_of_samples(height, changed, 2);  // bicubic: two samples on either side
     return {};
 }
 
@@ -79,7 +82,7 @@ Status Document::Impl::compute(const PaintCommand& command, Change& change) {
     if (!result.ok()) return result.error();
     change.index_changes = std::move(*result);
     add_page_images(change.index_changes, change.images);
-    change.dirt.index = dirt_of_samples(index, changed, 1); // nearest or bilinear: one texel on either side
+    change.dirt.index = dirt_of_samples(index, changed, 1);  // nearest or bilinear: one texel on either side
     return {};
 }
 
@@ -141,7 +144,8 @@ Status Document::Impl::write_change(Change& change, const JournalRow& row_head, 
     row.dirt = dirt_bytes(change.dirt);
     LOAM_TRY(store.write_journal(row));
     LOAM_TRY(store.write_meta("next_sequence", int64_t(row.sequence + 1)));
-    if (change.next_operator != next_operator) LOAM_TRY(store.write_meta("next_operator", int64_t(change.next_operator)));
+    if (change.next_operator != next_operator)
+        LOAM_TRY(store.write_meta("next_operator", int64_t(change.next_operator)));
     if (balance.height != before.height) LOAM_TRY(store.write_meta("height_pages", balance.height));
     if (balance.index != before.index) LOAM_TRY(store.write_meta("index_pages", balance.index));
     page_count = balance;
@@ -179,7 +183,8 @@ Result<Dirt> Document::Impl::commit_change(Change& change, const Command& comman
     return status.error();
 }
 
-Status Document::Impl::write_swaps(size_t first, size_t end, bool applied, Change& change, PageBalance& balance) {
+Status Document::Impl::write_swaps(size_t first, size_t end, bool applied, Change& change,
+                                   PageBalance& balance) {
     const size_t count = end - first;
     for (size_t i = 0; i < count; ++i) {
         // Undo from the newest back, redo from the oldest on.
@@ -189,14 +194,16 @@ Status Document::Impl::write_swaps(size_t first, size_t end, bool applied, Chang
         if (!images.ok()) return images.error();
         for (const RowImage& image : *images) {
             if (image.kind == RowImage::Kind::page) {
-                change.height_changes.push_back({image.key, std::nullopt}); // of either map: only the key counts here
+                change.height_changes.push_back(
+                    {image.key, std::nullopt});  // of either map: only the key counts here
                 continue;
             }
             auto& op = change.operators[uint64_t(image.key)];
             op.reset();
             if (!image.bytes) continue;
-            auto parsed = parse_operator(uint64_t(image.key),
-                                         {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
+            auto parsed =
+                parse_operator(uint64_t(image.key),
+                               {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
             if (!parsed.ok()) return error("the journal: {}", parsed.message());
             op = *parsed;
         }
@@ -278,4 +285,4 @@ Result<Dirt> Document::redo() {
     return dirt;
 }
 
-} // namespace loam
+}  // namespace loam

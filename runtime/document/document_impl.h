@@ -1,7 +1,8 @@
 // What a Document holds. Internal to this folder.
 //
-// Committing: a change is computed on copies of pages, written in a transaction, and only then, under the exclusive lock,
-// committed and shown to readers. If anything fails before that, memory has nothing to take back.
+// Committing: a change is computed on copies of pages, written in a transaction, and only then, under the
+// exclusive lock, committed and shown to readers. If anything fails before that, memory has nothing to take
+// back.
 #pragma once
 
 #include <atomic>
@@ -41,16 +42,16 @@ struct Document::Impl {
     OpenMode mode = OpenMode::read_write;
     MapShape height, index;
     WriterLock lock;
-    PageStore store; // the writing connection; not open in a read-only document
+    PageStore store;  // the writing connection; not open in a read-only document
     std::unique_ptr<BasePages> pages;
     OperatorSet operators;
-    std::vector<PageStore::JournalHead> heads; // ascending; the applied ones come first
+    std::vector<PageStore::JournalHead> heads;  // ascending; the applied ones come first
     uint64_t next_operator = 1, next_sequence = 1, next_group = 1;
     PageBalance page_count;
     std::atomic<uint64_t> revision{1};
-    mutable std::shared_mutex mutex; // exclusive while a change becomes visible
-    // Held by a writer that waits for `mutex`, so that readers who come one after another cannot keep it out. Readers wait
-    // here for a while only: a thread that already holds a ReadLock must get its second one.
+    mutable std::shared_mutex mutex;  // exclusive while a change becomes visible
+    // Held by a writer that waits for `mutex`, so that readers who come one after another cannot keep it out.
+    // Readers wait here for a while only: a thread that already holds a ReadLock must get its second one.
     mutable std::timed_mutex gate;
     bool bulk_writing = false;
 
@@ -67,7 +68,7 @@ struct Document::Impl {
 
     // --- commands (document_apply.cpp) ---
     struct Change {
-        std::vector<RowImage> images; // new rows; after the swap, the old ones
+        std::vector<RowImage> images;  // new rows; after the swap, the old ones
         std::map<uint64_t, std::optional<Operator>> operators;
         std::optional<PageEdits<int32_t>> heights;
         std::optional<PageEdits<IndexTexel>> texels;
@@ -86,10 +87,11 @@ struct Document::Impl {
     void change_operator(uint64_t id, const std::optional<Operator>& op, Change& change);
     Status write_change(Change& change, const JournalRow& row, const PageBalance& before);
     Result<Dirt> commit_change(Change& change, const Command& command);
-    // Swaps the rows of the journal heads [first, end), the direction that `applied` names, in one transaction.
+    // Swaps the rows of the journal heads [first, end), the direction that `applied` names, in one
+    // transaction.
     Result<Dirt> swap_commands(size_t first, size_t end, bool applied);
     void tidy_log();
     Status write_swaps(size_t first, size_t end, bool applied, Change& change, PageBalance& balance);
 };
 
-} // namespace loam
+}  // namespace loam

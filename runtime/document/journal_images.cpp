@@ -24,7 +24,8 @@ Status swap_operator(PageStore& store, RowImage& image) {
     auto current = store.read_operator(id);
     if (!current.ok()) return current.error();
     if (image.bytes)
-        LOAM_TRY(store.write_operator(id, {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()}));
+        LOAM_TRY(store.write_operator(
+            id, {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()}));
     else
         LOAM_TRY(store.erase_operator(id));
     image.bytes.reset();
@@ -32,7 +33,7 @@ Status swap_operator(PageStore& store, RowImage& image) {
     return {};
 }
 
-} // namespace
+}  // namespace
 
 std::vector<uint8_t> image_bytes(const std::vector<RowImage>& images) {
     ByteWriter writer;
@@ -55,7 +56,8 @@ Result<std::vector<RowImage>> images_of(std::span<const uint8_t> bytes) {
         image.key = int64_t(reader.u64());
         const uint8_t present = reader.u8();
         const auto content = reader.bytes(reader.u32());
-        if (kind > 1 || present > 1 || (present == 0 && !content.empty())) return error("damaged images of a command in the journal");
+        if (kind > 1 || present > 1 || (present == 0 && !content.empty()))
+            return error("damaged images of a command in the journal");
         image.kind = RowImage::Kind(kind);
         if (present == 1) image.bytes.emplace(content.begin(), content.end());
         images.push_back(std::move(image));
@@ -74,4 +76,4 @@ Status swap_images(PageStore& store, std::vector<RowImage>& images, PageBalance&
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

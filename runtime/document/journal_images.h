@@ -1,7 +1,8 @@
-// What a command replaced: previous blobs of pages and previous texts of operators, as the bytes of a journal row. Undo and
-// redo are one operation, `swap_images`: the rows of the tables and the images change places.
+// What a command replaced: previous blobs of pages and previous texts of operators, as the bytes of a journal
+// row. Undo and redo are one operation, `swap_images`: the rows of the tables and the images change places.
 //
-// An image: | 1 byte kind (0 page, 1 operator) | 8 bytes key or id | 1 byte present | 4 bytes length | bytes |
+// An image: | 1 byte kind (0 page, 1 operator) | 8 bytes key or id | 1 byte present | 4 bytes length | bytes
+// |
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,7 @@ struct RowImage {
     enum class Kind : uint8_t { page = 0, op = 1 };
     Kind kind = Kind::page;
     int64_t key = 0;
-    std::optional<std::vector<uint8_t>> bytes; // none: no such row
+    std::optional<std::vector<uint8_t>> bytes;  // none: no such row
 };
 
 [[nodiscard]] std::vector<uint8_t> image_bytes(const std::vector<RowImage>& images);
@@ -29,7 +30,8 @@ struct PageBalance {
     int64_t height = 0, index = 0;
 };
 
-// Writes each image into its table and puts what was there in its place. Inside a transaction of the caller's.
+// Writes each image into its table and puts what was there in its place. Inside a transaction of the
+// caller's.
 Status swap_images(PageStore& store, std::vector<RowImage>& images, PageBalance& balance);
 
-} // namespace loam
+}  // namespace loam

@@ -1,5 +1,5 @@
-// Commands and operators as JSON, both ways: the only file that sees nlohmann-json. Its exceptions, and the `Refused` of
-// this file, end at the two parse functions.
+// Commands and operators as JSON, both ways: the only file that sees nlohmann-json. Its exceptions, and the
+// `Refused` of this file, end at the two parse functions.
 #include <cmath>
 #include <set>
 
@@ -53,7 +53,8 @@ class Fields {
     }
     bool truth(const char* key) {
         const Json& value = need(key);
-        if (!value.is_boolean()) refuse("{}: \"{}\" must be true or false, found {}", place_, key, value.type_name());
+        if (!value.is_boolean())
+            refuse("{}: \"{}\" must be true or false, found {}", place_, key, value.type_name());
         return value.get<bool>();
     }
     std::string text(const char* key) { return text_of(need(key), key); }
@@ -62,7 +63,8 @@ class Fields {
         return value.get<std::string>();
     }
     double number_of(const Json& value, const std::string& what) const {
-        if (!value.is_number()) refuse("{}: \"{}\" must be a number, found {}", place_, what, value.type_name());
+        if (!value.is_number())
+            refuse("{}: \"{}\" must be a number, found {}", place_, what, value.type_name());
         const double number = value.get<double>();
         if (!std::isfinite(number)) refuse("{}: \"{}\" must be a finite number", place_, what);
         return number;
@@ -85,7 +87,8 @@ class Fields {
   private:
     uint64_t whole_of(const Json& value, const char* key, uint64_t most) const {
         if (!value.is_number_integer())
-            refuse("{}: \"{}\" must be a whole number, found {}", place_, key, value.is_number() ? value.dump() : value.type_name());
+            refuse("{}: \"{}\" must be a whole number, found {}", place_, key,
+                   value.is_number() ? value.dump() : value.type_name());
         if (!value.is_number_unsigned() || value.get<uint64_t>() > most)
             refuse("{}: \"{}\" is {}, must be 0 … {}", place_, key, value.dump(), most);
         return value.get<uint64_t>();
@@ -106,7 +109,8 @@ constexpr std::pair<const char*, SculptMode> kModes[] = {{"raise", SculptMode::r
 std::vector<glm::dvec2> read_dabs(Fields& fields) {
     std::vector<glm::dvec2> dabs;
     for (const Json& dab : fields.list("dabs")) {
-        if (!dab.is_array() || dab.size() != 2) refuse("{}: dab {} must be [x, y]", fields.place(), dabs.size());
+        if (!dab.is_array() || dab.size() != 2)
+            refuse("{}: dab {} must be [x, y]", fields.place(), dabs.size());
         const std::string what = fmt::format("dabs[{}]", dabs.size());
         dabs.emplace_back(fields.number_of(dab[0], what), fields.number_of(dab[1], what));
     }
@@ -128,7 +132,8 @@ SculptCommand read_sculpt(Fields& fields) {
     if (!found) refuse("sculpt: unknown mode \"{}\" (known: raise, lower, smooth, flatten)", mode);
     c.dabs = read_dabs(fields);
     c.radius_m = fields.number("radius_m", c.radius_m);
-    if (fields.find("strength") && fields.find("strength_m")) refuse("sculpt: give \"strength\" or \"strength_m\", not both");
+    if (fields.find("strength") && fields.find("strength_m"))
+        refuse("sculpt: give \"strength\" or \"strength_m\", not both");
     c.strength = fields.number("strength_m", fields.number("strength", c.strength));
     c.hardness = fields.number("hardness", c.hardness);
     c.target_m = c.mode == SculptMode::flatten ? fields.number("target_m") : fields.number("target_m", 0);
@@ -282,7 +287,8 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "remove") return RemoveOperatorCommand{fields.whole("id", kMaxId)};
     if (name == "undo") return UndoCommand{};
     if (name == "redo") return RedoCommand{};
-    refuse("unknown command \"{}\" (known: sculpt, paint, crater, footprints, operator, remove, undo, redo)", name);
+    refuse("unknown command \"{}\" (known: sculpt, paint, crater, footprints, operator, remove, undo, redo)",
+           name);
 }
 
 // Runs a reader over the parsed text; whatever is thrown becomes an error.
@@ -304,7 +310,7 @@ std::string dump(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-} // namespace
+}  // namespace
 
 Result<Command> parse_command(std::string_view json_line) {
     auto command = parse<Command>(json_line, [](const Json& json) {
@@ -377,4 +383,4 @@ Result<Operator> parse_operator(uint64_t id, std::string_view text) {
     return op;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -16,8 +16,8 @@ WorldRect square(double x_m, double y_m, double half_m) {
     return {x_m - half_m, y_m - half_m, x_m + half_m, y_m + half_m};
 }
 
-// Grids of different pages reach one place by different sums: their positions may differ in the last bit. Rounded to 2^-20 m
-// they are equal. Adding and taking away 1.5 * 2^32 rounds a double to just that step.
+// Grids of different pages reach one place by different sums: their positions may differ in the last bit.
+// Rounded to 2^-20 m they are equal. Adding and taking away 1.5 * 2^32 rounds a double to just that step.
 double settled(double metres) {
     constexpr double kRound = 6442450944.0;
     return (metres + kRound) - kRound;
@@ -41,7 +41,8 @@ GridRange samples_in(const SampleGrid<T>& grid, const WorldRect& rect) {
 
 // Calls visit(sample, offset of its position from the centre in metres) for the samples in the rectangle.
 template <typename T, typename Visit>
-void for_each_sample(const SampleGrid<T>& grid, const WorldRect& rect, double x_m, double y_m, Visit&& visit) {
+void for_each_sample(const SampleGrid<T>& grid, const WorldRect& rect, double x_m, double y_m,
+                     Visit&& visit) {
     const GridRange range = samples_in(grid, rect);
     for (int j = range.j0; j < range.j1; ++j) {
         const double dy = settled(grid.y0_m + j * grid.step_m) - y_m;
@@ -66,7 +67,8 @@ void apply_crater_height(const Crater& crater, const WorldRect& rect, const Samp
     });
 }
 
-void apply_footprint_height(const Footprint& print, const WorldRect& rect, const SampleGrid<double>& heights) {
+void apply_footprint_height(const Footprint& print, const WorldRect& rect,
+                            const SampleGrid<double>& heights) {
     const vec2 heading(float(std::sin(print.heading_rad)), float(std::cos(print.heading_rad)));
     for_each_sample(heights, rect, print.x_m, print.y_m, [&](double& height, double dx, double dy) {
         const vec2 offset(float(dx / print.length_m), float(dy / print.length_m));
@@ -75,7 +77,7 @@ void apply_footprint_height(const Footprint& print, const WorldRect& rect, const
     });
 }
 
-} // namespace
+}  // namespace
 
 WorldRect Operator::height_bounds() const {
     if (const auto* crater = std::get_if<Crater>(&shape))
@@ -107,14 +109,15 @@ void apply_height(const Operator& op, const SampleGrid<double>& heights_m) {
 void apply_index(const Operator& op, const ResolvedRoles& roles, const SampleGrid<IndexTexel>& texels) {
     const auto* crater = std::get_if<Crater>(&op.shape);
     if (!crater) return;
-    for_each_sample(texels, op.index_bounds(), crater->x_m, crater->y_m, [&](IndexTexel& texel, double dx, double dy) {
-        const vec2 local(float(dx / crater->radius_m), float(dy / crater->radius_m));
-        const int zone = shared::crater_zone(local, crater->seed);
-        if (zone != 0) texel.layer = zone == 1 ? roles.scorched : roles.broken;
-        const float factor = (1.0f - 0.62f * shared::crater_scorch(local, crater->seed)) *
-                             (1.0f - 0.3f * shared::crater_rays(local, crater->seed));
-        for (uint8_t& channel : texel.tint) channel = scaled(channel, factor);
-    });
+    for_each_sample(texels, op.index_bounds(), crater->x_m, crater->y_m,
+                    [&](IndexTexel& texel, double dx, double dy) {
+                        const vec2 local(float(dx / crater->radius_m), float(dy / crater->radius_m));
+                        const int zone = shared::crater_zone(local, crater->seed);
+                        if (zone != 0) texel.layer = zone == 1 ? roles.scorched : roles.broken;
+                        const float factor = (1.0f - 0.62f * shared::crater_scorch(local, crater->seed)) *
+                                             (1.0f - 0.3f * shared::crater_rays(local, crater->seed));
+                        for (uint8_t& channel : texel.tint) channel = scaled(channel, factor);
+                    });
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,6 +1,6 @@
-// Operators: live, parametric changes on top of the base maps. They are evaluated whenever a page they overlap is
-// composed and never burnt in, so that moving, switching off or deleting one is only dirt.
-// Source: Call of Duty talk, "Large Map Events", "Dynamic Decals".
+// Operators: live, parametric changes on top of the base maps. They are evaluated whenever a page they
+// overlap is composed and never burnt in, so that moving, switching off or deleting one is only dirt. Source:
+// Call of Duty talk, "Large Map Events", "Dynamic Decals".
 #pragma once
 
 #include <cstdint>
@@ -15,30 +15,31 @@
 namespace loam {
 
 struct Crater {
-    double x_m = 0, y_m = 0;   // centre
-    double radius_m = 10;      // of the rim's crest, 0.1 … 2000
-    double depth_m = 0;        // bowl below the old ground; 0: radius * 0.4
-    uint32_t seed = 0;         // irregular rim, rays, scorch pattern
+    double x_m = 0, y_m = 0;  // centre
+    double radius_m = 10;     // of the rim's crest, 0.1 … 2000
+    double depth_m = 0;       // bowl below the old ground; 0: radius * 0.4
+    uint32_t seed = 0;        // irregular rim, rays, scorch pattern
 };
 
 struct Footprint {
     double x_m = 0, y_m = 0;
-    double heading_rad = 0;    // clockwise from north, where the toes point
-    double length_m = 0.3;     // 0.05 … 5
-    double depth_m = 0.03;     // of the dent in the height map
-    int foot = 0;              // 0 left, 1 right
+    double heading_rad = 0;  // clockwise from north, where the toes point
+    double length_m = 0.3;   // 0.05 … 5
+    double depth_m = 0.03;   // of the dent in the height map
+    int foot = 0;            // 0 left, 1 right
     uint32_t seed = 0;
 };
 
 using OperatorShape = std::variant<Crater, Footprint>;
 
 struct Operator {
-    uint64_t id = 0;      // unique in the document, never reused
-    uint64_t order = 0;   // evaluated in ascending (order, id)
+    uint64_t id = 0;     // unique in the document, never reused
+    uint64_t order = 0;  // evaluated in ascending (order, id)
     bool enabled = true;
     OperatorShape shape;
 
-    // The world rectangle outside which the operator changes nothing in that map; empty where it does not touch it.
+    // The world rectangle outside which the operator changes nothing in that map; empty where it does not
+    // touch it.
     [[nodiscard]] WorldRect height_bounds() const;
     [[nodiscard]] WorldRect index_bounds() const;
     [[nodiscard]] WorldRect texture_bounds() const;
@@ -53,16 +54,17 @@ struct SampleGrid {
     [[nodiscard]] T& at(int i, int j) const { return data[j * stride + i]; }
 };
 
-struct ResolvedRoles { // LayerRoles as indices
+struct ResolvedRoles {  // LayerRoles as indices
     uint16_t scorched = 0, broken = 0;
 };
 
-// Footprints change heights and are drawn into the texture; craters change heights, layers and tint, and may be drawn too. The
-// mathematics is in shaders/document/crater_math.h and footprint_math.h, for shaders as well.
+// Footprints change heights and are drawn into the texture; craters change heights, layers and tint, and may
+// be drawn too. The mathematics is in shaders/document/crater_math.h and footprint_math.h, for shaders as
+// well.
 //
-// Heights in metres. A sample's result depends on the sample's position only, never on the grid it is part of:
-// pages of every level must agree.
+// Heights in metres. A sample's result depends on the sample's position only, never on the grid it is part
+// of: pages of every level must agree.
 void apply_height(const Operator& op, const SampleGrid<double>& heights_m);
 void apply_index(const Operator& op, const ResolvedRoles& roles, const SampleGrid<IndexTexel>& texels);
 
-} // namespace loam
+}  // namespace loam

@@ -11,7 +11,7 @@ namespace {
 
 int level_of(const WorldRect& bounds) {
     int exponent = 0;
-    std::frexp(std::max({bounds.width(), bounds.height(), 1e-3}), &exponent); // size < 2^exponent
+    std::frexp(std::max({bounds.width(), bounds.height(), 1e-3}), &exponent);  // size < 2^exponent
     return exponent;
 }
 
@@ -27,13 +27,14 @@ uint64_t key_of(int32_t x, int32_t y) {
     return uint64_t(uint32_t(y)) << 32 | uint32_t(x);
 }
 
-} // namespace
+}  // namespace
 
 void OperatorIndex::add(const Operator* op, const WorldRect& bounds) {
     if (bounds.empty()) return;
     const int level = level_of(bounds);
     const double side = side_of(level);
-    levels_[level].cells[key_of(cell_of(bounds.min_x, side), cell_of(bounds.min_y, side))].push_back({op, bounds});
+    levels_[level].cells[key_of(cell_of(bounds.min_x, side), cell_of(bounds.min_y, side))].push_back(
+        {op, bounds});
 }
 
 void OperatorIndex::remove(const Operator* op, const WorldRect& bounds) {
@@ -66,7 +67,8 @@ void OperatorIndex::query(const WorldRect& rect, std::vector<const Operator*>& o
         }
         for (int64_t y = y0; y <= y1; ++y)
             for (int64_t x = x0; x <= x1; ++x)
-                if (const auto cell = level.cells.find(key_of(int32_t(x), int32_t(y))); cell != level.cells.end())
+                if (const auto cell = level.cells.find(key_of(int32_t(x), int32_t(y)));
+                    cell != level.cells.end())
                     visit(cell->second);
     }
     std::sort(out.begin(), out.end(), [](const Operator* a, const Operator* b) {
@@ -74,4 +76,4 @@ void OperatorIndex::query(const WorldRect& rect, std::vector<const Operator*>& o
     });
 }
 
-} // namespace loam
+}  // namespace loam

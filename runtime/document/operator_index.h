@@ -1,6 +1,6 @@
-// Operators by place: a hash grid for every power of two of size, an operator in the one cell that holds the south-west corner
-// of its bounds. A query looks at the cells it overlaps and one more to the west and south, of sizes that are in use, so
-// that what lies elsewhere costs nothing, whatever its number.
+// Operators by place: a hash grid for every power of two of size, an operator in the one cell that holds the
+// south-west corner of its bounds. A query looks at the cells it overlaps and one more to the west and south,
+// of sizes that are in use, so that what lies elsewhere costs nothing, whatever its number.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,8 @@ namespace loam {
 
 class OperatorIndex {
   public:
-    // Empty bounds: not indexed. The operator must outlive its entry, and be removed with the bounds it was added with.
+    // Empty bounds: not indexed. The operator must outlive its entry, and be removed with the bounds it was
+    // added with.
     void add(const Operator* op, const WorldRect& bounds);
     void remove(const Operator* op, const WorldRect& bounds);
     // Appends nothing twice; ascending (order, id); enabled operators only. Clears `out` first.
@@ -29,7 +30,7 @@ class OperatorIndex {
     struct Level {
         std::unordered_map<uint64_t, std::vector<Entry>> cells;
     };
-    std::map<int, Level> levels_; // by log2 of the cell's side in metres
+    std::map<int, Level> levels_;  // by log2 of the cell's side in metres
 };
 
-} // namespace loam
+}  // namespace loam

@@ -1,4 +1,5 @@
-// Operators as text, one JSON object each, for the database. Reading gives back the same operator, numbers bit for bit.
+// Operators as text, one JSON object each, for the database. Reading gives back the same operator, numbers
+// bit for bit.
 #pragma once
 
 #include <string>
@@ -9,7 +10,7 @@
 
 namespace loam {
 
-[[nodiscard]] std::string operator_json(const Operator& op); // without its id, which is the row's key
+[[nodiscard]] std::string operator_json(const Operator& op);  // without its id, which is the row's key
 [[nodiscard]] Result<Operator> parse_operator(uint64_t id, std::string_view json);
 
-} // namespace loam
+}  // namespace loam

@@ -32,9 +32,10 @@ std::vector<Operator> OperatorSet::sorted() const {
     std::vector<Operator> all;
     all.reserve(by_id_.size());
     for (const auto& [id, op] : by_id_) all.push_back(*op);
-    std::sort(all.begin(), all.end(),
-              [](const Operator& a, const Operator& b) { return a.order != b.order ? a.order < b.order : a.id < b.id; });
+    std::sort(all.begin(), all.end(), [](const Operator& a, const Operator& b) {
+        return a.order != b.order ? a.order < b.order : a.id < b.id;
+    });
     return all;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -13,19 +13,20 @@ namespace loam {
 
 class OperatorSet {
   public:
-    void set(const Operator& op); // adds or replaces
-    void remove(uint64_t id);     // unknown: fine
+    void set(const Operator& op);  // adds or replaces
+    void remove(uint64_t id);      // unknown: fine
     [[nodiscard]] const Operator* find(uint64_t id) const;
     [[nodiscard]] size_t size() const { return by_id_.size(); }
-    [[nodiscard]] std::vector<Operator> sorted() const; // ascending (order, id)
+    [[nodiscard]] std::vector<Operator> sorted() const;  // ascending (order, id)
 
     [[nodiscard]] const OperatorIndex& over_height() const { return height_; }
     [[nodiscard]] const OperatorIndex& over_index() const { return index_; }
     [[nodiscard]] const OperatorIndex& over_texture() const { return texture_; }
 
   private:
-    std::unordered_map<uint64_t, std::unique_ptr<Operator>> by_id_; // pointers stay valid while the map grows
+    std::unordered_map<uint64_t, std::unique_ptr<Operator>>
+        by_id_;  // pointers stay valid while the map grows
     OperatorIndex height_, index_, texture_;
 };
 
-} // namespace loam
+}  // namespace loam

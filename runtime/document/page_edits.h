@@ -1,5 +1,5 @@
-// What a command does to the pages of one base map, before anything is written: copies of the pages it touches, then the
-// mips, then blobs. The document stays as it was until the result has been committed.
+// What a command does to the pages of one base map, before anything is written: copies of the pages it
+// touches, then the mips, then blobs. The document stays as it was until the result has been committed.
 #pragma once
 
 #include <algorithm>
@@ -40,24 +40,26 @@ class PageEdits {
     Status read(int x0, int y0, int width, int height, Sample* out) {
         Status status;
         PageHandle<Sample> keep;
-        read_window(shape_, 0, x0, y0, width, height, fallback_,
-                    [&](int page_x, int page_y) -> const BasePage<Sample>* {
-                        const PageKey key{shape_.map, 0, page_x, page_y};
-                        if (const auto found = edits_.find(key.packed()); found != edits_.end()) return found->second.samples.get();
-                        auto loaded = pages_.template load<Sample>(key);
-                        if (!loaded.ok()) {
-                            status = loaded.error();
-                            return nullptr;
-                        }
-                        keep = *loaded;
-                        return keep.get();
-                    },
-                    out);
+        read_window(
+            shape_, 0, x0, y0, width, height, fallback_,
+            [&](int page_x, int page_y) -> const BasePage<Sample>* {
+                const PageKey key{shape_.map, 0, page_x, page_y};
+                if (const auto found = edits_.find(key.packed()); found != edits_.end())
+                    return found->second.samples.get();
+                auto loaded = pages_.template load<Sample>(key);
+                if (!loaded.ok()) {
+                    status = loaded.error();
+                    return nullptr;
+                }
+                keep = *loaded;
+                return keep.get();
+            },
+            out);
         return status;
     }
 
-    // Carries the changed samples up the mips and encodes. `changed`: rectangles of changed samples of mip 0, one a page.
-    // Ascending keys; pages that are as before are not among them.
+    // Carries the changed samples up the mips and encodes. `changed`: rectangles of changed samples of mip 0,
+    // one a page. Ascending keys; pages that are as before are not among them.
     Result<std::vector<PageChange>> finish(std::vector<TexelRect>& changed) {
         std::vector<int64_t> finest;
         for (const auto& [key, edit] : edits_) finest.push_back(key);
@@ -88,10 +90,12 @@ class PageEdits {
 
     Result<Sample*> edited(const PageKey& key) {
         const int64_t packed = key.packed();
-        if (const auto found = edits_.find(packed); found != edits_.end()) return found->second.samples->data();
+        if (const auto found = edits_.find(packed); found != edits_.end())
+            return found->second.samples->data();
         if (edits_.size() >= kMaxPagesPerCommand)
-            return error("the command changes more than {} million samples at once; use a smaller brush or fewer dabs",
-                         kMaxPagesPerCommand * size_t(kBasePageSamples) / 1000000);
+            return error(
+                "the command changes more than {} million samples at once; use a smaller brush or fewer dabs",
+                kMaxPagesPerCommand * size_t(kBasePageSamples) / 1000000);
         auto before = pages_.template load<Sample>(key);
         if (!before.ok()) return before.error();
         Edit edit{.before = *before, .samples = std::make_shared<BasePage<Sample>>()};
@@ -123,7 +127,8 @@ class PageEdits {
             const int step = 1 << mip;
             const int x0 = (rect.x0 + step - 1) / step, x1 = (rect.x1 - 1) / step;
             const int y0 = (rect.y0 + step - 1) / step, y1 = (rect.y1 - 1) / step;
-            if (x0 > x1 || y0 > y1) continue; // a coarser one may still have a sample here: 0 is in all of them
+            if (x0 > x1 || y0 > y1)
+                continue;  // a coarser one may still have a sample here: 0 is in all of them
             // A mip-0 page lies in one page of every mip.
             const auto page = edited({shape_.map, mip, key.x >> mip, key.y >> mip});
             if (!page.ok()) return page.error();
@@ -143,7 +148,8 @@ class PageEdits {
             const bool same = edit.before ? *edit.before == *edit.samples : all_default(*edit.samples);
             if (!same) changes.push_back({key, std::nullopt});
         }
-        std::sort(changes.begin(), changes.end(), [](const PageChange& a, const PageChange& b) { return a.key < b.key; });
+        std::sort(changes.begin(), changes.end(),
+                  [](const PageChange& a, const PageChange& b) { return a.key < b.key; });
         // 16 pages, a millisecond, are worth a thread.
         parallel_ranges(int(changes.size()), 16, [&](int begin, int end) {
             for (int i = begin; i < end; ++i) {
@@ -165,4 +171,4 @@ class PageEdits {
     std::unordered_map<int64_t, Edit> edits_;
 };
 
-} // namespace loam
+}  // namespace loam

@@ -1,6 +1,6 @@
-// A texel takes the layer when a number hashed from its coordinates and the seed is below strength * falloff: strokes of one
-// seed agree on which texels those are, so that more dabs fill a disc no further than its weight says. Tint is blended by
-// strength * falloff a dab.
+// A texel takes the layer when a number hashed from its coordinates and the seed is below strength * falloff:
+// strokes of one seed agree on which texels those are, so that more dabs fill a disc no further than its
+// weight says. Tint is blended by strength * falloff a dab.
 #include "runtime/document/paint.h"
 
 #include <cmath>
@@ -14,11 +14,11 @@ namespace {
 
 struct SlopeRange {
     double min_tangent2 = 0, max_tangent2 = INFINITY;
-    bool any = true; // no limit: slopes need not be read
+    bool any = true;  // no limit: slopes need not be read
 };
 
 SlopeRange slope_range(const PaintCommand& command) {
-    constexpr double kUpright_rad = 1.5707; // a little below a right angle: vertical ground counts as that
+    constexpr double kUpright_rad = 1.5707;  // a little below a right angle: vertical ground counts as that
     SlopeRange range;
     const double low = std::tan(std::min(command.min_slope_rad, kUpright_rad));
     const double high = std::tan(std::min(command.max_slope_rad, kUpright_rad));
@@ -35,8 +35,10 @@ void blend_tint(IndexTexel& texel, const glm::dvec3& tint, double weight) {
     }
 }
 
-// A brush finer than the map paints the one texel nearest to it wholly; at full hardness a disc has no soft rim.
-double paint_falloff(const PaintCommand& command, const DabFootprint& dab, bool finer_than_map, int x, int y) {
+// A brush finer than the map paints the one texel nearest to it wholly; at full hardness a disc has no soft
+// rim.
+double paint_falloff(const PaintCommand& command, const DabFootprint& dab, bool finer_than_map, int x,
+                     int y) {
     if (finer_than_map) return x == dab.nearest_x && y == dab.nearest_y ? 1 : 0;
     const double dx = x - dab.x, dy = y - dab.y;
     const double t = std::sqrt(dx * dx + dy * dy) / dab.radius;
@@ -44,7 +46,7 @@ double paint_falloff(const PaintCommand& command, const DabFootprint& dab, bool 
     return brush_falloff(t, command.hardness);
 }
 
-} // namespace
+}  // namespace
 
 Status paint(const PaintCommand& command, uint16_t layer, SlopeReader& slopes, PageEdits<IndexTexel>& edits) {
     const SlopeRange slope = slope_range(command);
@@ -59,7 +61,8 @@ Status paint(const PaintCommand& command, uint16_t layer, SlopeReader& slopes, P
             if (*tangent2 < slope.min_tangent2 || *tangent2 > slope.max_tangent2) return {};
         }
         if (command.tint) blend_tint(texel, *command.tint, weight);
-        if (command.layer && double(shared::noise_share(shared::noise_cell(x, y, command.seed))) < weight) texel.layer = layer;
+        if (command.layer && double(shared::noise_share(shared::noise_cell(x, y, command.seed))) < weight)
+            texel.layer = layer;
         return {};
     };
     for (const glm::dvec2& center : command.dabs) {
@@ -69,12 +72,13 @@ Status paint(const PaintCommand& command, uint16_t layer, SlopeReader& slopes, P
             if (!page.ok()) return page.error();
             for (int y = part.y0; y < part.y1; ++y)
                 for (int x = part.x0; x < part.x1; ++x)
-                    LOAM_TRY(paint_texel((*page)[(y - page_y * kBasePageSide) * kBasePageSide + x - page_x * kBasePageSide], dab,
-                                         x, y));
+                    LOAM_TRY(paint_texel(
+                        (*page)[(y - page_y * kBasePageSide) * kBasePageSide + x - page_x * kBasePageSide],
+                        dab, x, y));
             return {};
         }));
     }
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

@@ -11,4 +11,4 @@ namespace loam {
 // `layer`: the index of command.layer, where it is given.
 Status paint(const PaintCommand& command, uint16_t layer, SlopeReader& slopes, PageEdits<IndexTexel>& edits);
 
-} // namespace loam
+}  // namespace loam

@@ -1,7 +1,7 @@
-// One dab = its samples, a weight for each by falloff, and a new height from weight and old height. Everything is rounded to
-// whole millimetres, half away from zero, so that a replay gives the same bits.
-// Smoothing blends towards a tent filter (two box filters, running sums in whole numbers) of an eighth of the radius, of the
-// heights before the dab; so it averages only and cannot overshoot.
+// One dab = its samples, a weight for each by falloff, and a new height from weight and old height.
+// Everything is rounded to whole millimetres, half away from zero, so that a replay gives the same bits.
+// Smoothing blends towards a tent filter (two box filters, running sums in whole numbers) of an eighth of the
+// radius, of the heights before the dab; so it averages only and cannot overshoot.
 #include "runtime/document/sculpt.h"
 
 #include <algorithm>
@@ -85,7 +85,8 @@ Status for_each_sample(const DabFootprint& dab, double hardness, PageEdits<int32
                 double weight = brush_falloff(std::sqrt(dx * dx + dy * dy) / dab.radius, hardness);
                 if (nearest) weight = std::max(weight, kLeastNearestWeight);
                 if (weight <= 0) continue;
-                change((*page)[(y - page_y * kBasePageSide) * kBasePageSide + x - page_x * kBasePageSide], weight, nearest, x, y);
+                change((*page)[(y - page_y * kBasePageSide) * kBasePageSide + x - page_x * kBasePageSide],
+                       weight, nearest, x, y);
             }
         return {};
     });
@@ -95,21 +96,24 @@ Status raise(const SculptCommand& command, const DabFootprint& dab, PageEdits<in
     const double strength_mm = command.strength / kHeightStep_m;
     const int64_t sign = command.mode == SculptMode::lower ? -1 : 1;
     const int64_t least = command.strength > 0 ? 1 : 0;
-    return for_each_sample(dab, command.hardness, edits, [&](int32_t& height, double weight, bool nearest, int, int) {
-        int64_t step = rounded(strength_mm * weight);
-        if (nearest) step = std::max(step, least);
-        height = saturate_height_mm(height + sign * step);
-    });
+    return for_each_sample(dab, command.hardness, edits,
+                           [&](int32_t& height, double weight, bool nearest, int, int) {
+                               int64_t step = rounded(strength_mm * weight);
+                               if (nearest) step = std::max(step, least);
+                               height = saturate_height_mm(height + sign * step);
+                           });
 }
 
 Status flatten(const SculptCommand& command, const DabFootprint& dab, PageEdits<int32_t>& edits) {
     const int32_t target = height_mm_from_m(command.target_m);
-    return for_each_sample(dab, command.hardness, edits, [&](int32_t& height, double weight, bool nearest, int, int) {
-        const int64_t difference = int64_t(target) - height;
-        int64_t step = rounded(double(difference) * weight * command.strength);
-        if (nearest && step == 0 && command.strength > 0) step = (difference > 0) - (difference < 0);
-        height = saturate_height_mm(height + step);
-    });
+    return for_each_sample(dab, command.hardness, edits,
+                           [&](int32_t& height, double weight, bool nearest, int, int) {
+                               const int64_t difference = int64_t(target) - height;
+                               int64_t step = rounded(double(difference) * weight * command.strength);
+                               if (nearest && step == 0 && command.strength > 0)
+                                   step = (difference > 0) - (difference < 0);
+                               height = saturate_height_mm(height + step);
+                           });
 }
 
 Status smooth(const SculptCommand& command, const DabFootprint& dab, PageEdits<int32_t>& edits) {
@@ -118,30 +122,37 @@ Status smooth(const SculptCommand& command, const DabFootprint& dab, PageEdits<i
     const auto means = smoothed(edits, dab.rect, box);
     if (!means.ok()) return means.error();
     const double side = 2 * box + 1, count = side * side * side * side;
-    return for_each_sample(dab, command.hardness, edits, [&](int32_t& height, double weight, bool, int x, int y) {
-        const size_t at = size_t(y - dab.rect.y0) * size_t(dab.rect.width()) + size_t(x - dab.rect.x0);
-        const double difference = double((*means)[at]) / count - height;
-        height = saturate_height_mm(height + rounded(difference * weight * command.strength));
-    });
+    return for_each_sample(
+        dab, command.hardness, edits, [&](int32_t& height, double weight, bool, int x, int y) {
+            const size_t at = size_t(y - dab.rect.y0) * size_t(dab.rect.width()) + size_t(x - dab.rect.x0);
+            const double difference = double((*means)[at]) / count - height;
+            height = saturate_height_mm(height + rounded(difference * weight * command.strength));
+        });
 }
 
-} // namespace
+}  // namespace
 
 Status sculpt(const SculptCommand& command, PageEdits<int32_t>& edits) {
     for (const glm::dvec2& center : command.dabs) {
         const DabFootprint dab = dab_footprint(edits.shape(), center, command.radius_m);
         const size_t pages = size_t(dab.rect.area() / kBasePageSamples);
         if (pages > kMaxPagesPerCommand)
-            return error("a dab covers {} million samples, the limit is {}; use a smaller brush", dab.rect.area() / 1000000,
-                         kMaxPagesPerCommand * size_t(kBasePageSamples) / 1000000);
+            return error("a dab covers {} million samples, the limit is {}; use a smaller brush",
+                         dab.rect.area() / 1000000, kMaxPagesPerCommand * size_t(kBasePageSamples) / 1000000);
         switch (command.mode) {
             case SculptMode::raise:
-            case SculptMode::lower: LOAM_TRY(raise(command, dab, edits)); break;
-            case SculptMode::smooth: LOAM_TRY(smooth(command, dab, edits)); break;
-            case SculptMode::flatten: LOAM_TRY(flatten(command, dab, edits)); break;
+            case SculptMode::lower:
+                LOAM_TRY(raise(command, dab, edits));
+                break;
+            case SculptMode::smooth:
+                LOAM_TRY(smooth(command, dab, edits));
+                break;
+            case SculptMode::flatten:
+                LOAM_TRY(flatten(command, dab, edits));
+                break;
         }
     }
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,4 +1,5 @@
-// The sculpting brushes: raise, lower, smooth, flatten. Dabs act one after another, each on what the one before left.
+// The sculpting brushes: raise, lower, smooth, flatten. Dabs act one after another, each on what the one
+// before left.
 #pragma once
 
 #include "runtime/base/result.h"
@@ -9,4 +10,4 @@ namespace loam {
 
 Status sculpt(const SculptCommand& command, PageEdits<int32_t>& edits);
 
-} // namespace loam
+}  // namespace loam

@@ -16,7 +16,8 @@ Result<double> SlopeReader::height_m(int x, int y) {
         page_x_ = page_x;
         page_y_ = page_y;
     }
-    return height_m_from_mm(page_ ? (*page_)[size_t(y % kBasePageSide * kBasePageSide + x % kBasePageSide)] : fallback_mm_);
+    return height_m_from_mm(page_ ? (*page_)[size_t(y % kBasePageSide * kBasePageSide + x % kBasePageSide)]
+                                  : fallback_mm_);
 }
 
 Result<double> SlopeReader::tangent_squared(double x_m, double y_m) {
@@ -35,4 +36,4 @@ Result<double> SlopeReader::tangent_squared(double x_m, double y_m) {
     return east * east + north * north;
 }
 
-} // namespace loam
+}  // namespace loam

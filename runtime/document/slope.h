@@ -19,8 +19,8 @@ class SlopeReader {
     BasePages& pages_;
     const MapShape shape_;
     const int32_t fallback_mm_;
-    PageHandle<int32_t> page_; // the last one read
+    PageHandle<int32_t> page_;  // the last one read
     int page_x_ = -1, page_y_ = -1;
 };
 
-} // namespace loam
+}  // namespace loam

@@ -1,4 +1,5 @@
-// Every row of a project read and checked against what it must be. Works on a read-only connection and takes no lock.
+// Every row of a project read and checked against what it must be. Works on a read-only connection and takes
+// no lock.
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -12,12 +13,15 @@ namespace loam {
 
 namespace {
 
-constexpr size_t kMostFaults = 1000; // of a wrecked file, no more than anybody reads
+constexpr size_t kMostFaults = 1000;  // of a wrecked file, no more than anybody reads
 
 class Verifier {
   public:
     Verifier(const ProjectSettings& settings, PageStore& store)
-        : settings_(settings), store_(store), height_(height_shape(settings)), index_(index_shape(settings)) {}
+        : settings_(settings),
+          store_(store),
+          height_(height_shape(settings)),
+          index_(index_shape(settings)) {}
 
     Result<std::vector<std::string>> run() {
         auto sound = store_.quick_check();
@@ -46,8 +50,9 @@ class Verifier {
         return store_.for_each_page([&](int64_t packed, std::span<const uint8_t>) {
             const PageKey key = PageKey::unpacked(packed);
             const MapShape& shape = key.map == BaseMap::height ? height_ : index_;
-            if (key.packed() != packed || (key.map != BaseMap::height && key.map != BaseMap::index) || key.mip >= shape.mip_count ||
-                key.x >= shape.pages_x(key.mip) || key.y >= shape.pages_y(key.mip))
+            if (key.packed() != packed || (key.map != BaseMap::height && key.map != BaseMap::index) ||
+                key.mip >= shape.mip_count || key.x >= shape.pages_x(key.mip) ||
+                key.y >= shape.pages_y(key.mip))
                 fail("terrain.db has a page with the key {}, which lies outside the map", packed);
             else
                 (key.map == BaseMap::height ? height_keys_ : index_keys_).push_back(key);
@@ -80,7 +85,8 @@ class Verifier {
             const auto blob = store_.read_page(key.packed());
             if (!blob.ok()) return blob.error();
             BasePage<Sample> page;
-            const Status decoded = blob->has_value() ? decode_page<Sample>(**blob, page) : error("it is gone");
+            const Status decoded =
+                blob->has_value() ? decode_page<Sample>(**blob, page) : error("it is gone");
             if (!decoded.ok()) {
                 fail("{}: {}", name_of(key), decoded.message());
                 continue;
@@ -93,8 +99,10 @@ class Verifier {
     }
 
     template <typename Sample>
-    void check_samples(const PageKey& key, const BasePage<Sample>& page, const MapShape& shape, const Sample& fallback) {
-        const int columns = shape.width(key.mip) - key.x * kBasePageSide, rows = shape.height(key.mip) - key.y * kBasePageSide;
+    void check_samples(const PageKey& key, const BasePage<Sample>& page, const MapShape& shape,
+                       const Sample& fallback) {
+        const int columns = shape.width(key.mip) - key.x * kBasePageSide,
+                  rows = shape.height(key.mip) - key.y * kBasePageSide;
         bool all_default = true, outside_default = true, in_range = true;
         for (int y = 0; y < kBasePageSide; ++y)
             for (int x = 0; x < kBasePageSide; ++x) {
@@ -102,7 +110,8 @@ class Verifier {
                 const bool is_default = sample == fallback;
                 all_default &= is_default;
                 if (x >= columns || y >= rows) outside_default &= is_default;
-                if constexpr (std::is_same_v<Sample, int32_t>) in_range &= sample == saturate_height_mm(sample);
+                if constexpr (std::is_same_v<Sample, int32_t>)
+                    in_range &= sample == saturate_height_mm(sample);
             }
         if (all_default) fail("{} is all default and should not be stored", name_of(key));
         if (!outside_default) fail("{} has samples beyond the edge of the map", name_of(key));
@@ -111,7 +120,8 @@ class Verifier {
 
     // By induction over mips, every mip then equals the samples of mip 0.
     template <typename Sample>
-    Status check_against_finer(const PageKey& key, const BasePage<Sample>& page, const MapShape& shape, const Sample& fallback) {
+    Status check_against_finer(const PageKey& key, const BasePage<Sample>& page, const MapShape& shape,
+                               const Sample& fallback) {
         for (int quarter = 0; quarter < 4; ++quarter) {
             const PageKey fine{key.map, key.mip - 1, 2 * key.x + quarter % 2, 2 * key.y + quarter / 2};
             if (fine.x >= shape.pages_x(fine.mip) || fine.y >= shape.pages_y(fine.mip)) continue;
@@ -120,11 +130,12 @@ class Verifier {
             constexpr int kHalf = kBasePageSide / 2;
             for (int y = 0; y < kHalf; ++y)
                 for (int x = 0; x < kHalf; ++x) {
-                    const Sample& have = page[size_t((y + quarter / 2 * kHalf) * kBasePageSide + x + quarter % 2 * kHalf)];
+                    const Sample& have =
+                        page[size_t((y + quarter / 2 * kHalf) * kBasePageSide + x + quarter % 2 * kHalf)];
                     const Sample& want = *finer ? (**finer)[size_t(2 * y * kBasePageSide + 2 * x)] : fallback;
                     if (have == want) continue;
-                    fail("{} does not equal the samples of mip {} at its sample {}, {}", name_of(key), fine.mip,
-                         x + quarter % 2 * kHalf, y + quarter / 2 * kHalf);
+                    fail("{} does not equal the samples of mip {} at its sample {}, {}", name_of(key),
+                         fine.mip, x + quarter % 2 * kHalf, y + quarter / 2 * kHalf);
                     return {};
                 }
         }
@@ -148,7 +159,8 @@ class Verifier {
     }
 
     Status check_counts() {
-        for (const auto& [name, keys] : {std::pair{"height_pages", &height_keys_}, {"index_pages", &index_keys_}}) {
+        for (const auto& [name, keys] :
+             {std::pair{"height_pages", &height_keys_}, {"index_pages", &index_keys_}}) {
             const auto stored = store_.read_meta(name);
             if (!stored.ok()) return stored.error();
             if (stored->value_or(0) != int64_t(keys->size()))
@@ -177,10 +189,13 @@ class Verifier {
         return store_.for_each_journal(0, PageStore::JournalColumns::all, [&](const JournalRow& row) {
             const auto command = parse_command(row.json);
             if (!command.ok()) fail("command {} of the journal: {}", row.sequence, command.message());
-            if (row.applied && undone) fail("command {} of the journal is applied after one that is undone", row.sequence);
+            if (row.applied && undone)
+                fail("command {} of the journal is applied after one that is undone", row.sequence);
             undone |= !row.applied;
-            if (int64_t(row.sequence) >= next->value_or(1)) fail("command {} of the journal has a number of the future", row.sequence);
-            if (const auto dirt = dirt_of(row.dirt); !dirt.ok()) fail("command {}: {}", row.sequence, dirt.message());
+            if (int64_t(row.sequence) >= next->value_or(1))
+                fail("command {} of the journal has a number of the future", row.sequence);
+            if (const auto dirt = dirt_of(row.dirt); !dirt.ok())
+                fail("command {}: {}", row.sequence, dirt.message());
             check_images(row);
             return Status();
         });
@@ -193,7 +208,9 @@ class Verifier {
             if (!image.bytes) continue;
             Status status;
             if (image.kind == RowImage::Kind::op) {
-                const auto op = parse_operator(uint64_t(image.key), {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
+                const auto op =
+                    parse_operator(uint64_t(image.key),
+                                   {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
                 if (!op.ok()) status = op.error();
             } else if (PageKey::unpacked(image.key).map == BaseMap::height) {
                 BasePage<int32_t> page;
@@ -202,7 +219,8 @@ class Verifier {
                 BasePage<IndexTexel> page;
                 status = decode_page<IndexTexel>(*image.bytes, page);
             }
-            if (!status.ok()) fail("command {} of the journal, an image of it: {}", row.sequence, status.message());
+            if (!status.ok())
+                fail("command {} of the journal, an image of it: {}", row.sequence, status.message());
         }
     }
 
@@ -223,7 +241,7 @@ class Verifier {
     std::vector<std::string> faults_;
 };
 
-} // namespace
+}  // namespace
 
 Result<std::vector<std::string>> Document::verify(const std::filesystem::path& folder) {
     const auto settings = load_project(folder);
@@ -236,4 +254,4 @@ Result<std::vector<std::string>> Document::verify(const std::filesystem::path& f
     return Verifier(*settings, *store).run();
 }
 
-} // namespace loam
+}  // namespace loam

@@ -21,7 +21,7 @@ namespace {
 
 constexpr char kMagic[] = "LOAMLYR1";
 constexpr size_t kHeadBytes = 12;
-constexpr int kZstdLevel = 6; // written once, read often
+constexpr int kZstdLevel = 6;  // written once, read often
 
 void put_u32(uint8_t* bytes, uint32_t value) {
     for (int i = 0; i < 4; ++i) bytes[i] = uint8_t(value >> (8 * i));
@@ -48,7 +48,8 @@ Status read_texture(std::span<const uint8_t>& rest, size_t bytes, std::vector<ui
 }
 
 Result<LayerTextures> read_textures(std::span<const uint8_t> bytes) {
-    if (bytes.size() < kHeadBytes || std::memcmp(bytes.data(), kMagic, 8) != 0) return error("not a layer file");
+    if (bytes.size() < kHeadBytes || std::memcmp(bytes.data(), kMagic, 8) != 0)
+        return error("not a layer file");
     const uint32_t size = get_u32(bytes.data() + 8);
     if (size < 4 || size > 4096 || (size & (size - 1)) != 0)
         return error("its size is {} texels, must be a power of two from 4 to 4096", size);
@@ -68,15 +69,17 @@ Result<LayerTextures> read_textures(std::span<const uint8_t> bytes) {
     return textures;
 }
 
-} // namespace
+}  // namespace
 
 Status save_layer(const std::filesystem::path& file, const LayerTextures& textures) {
-    LOAM_CHECK(textures.mip_count == mips_of(textures.size_texels), "build_layer_mips comes before save_layer");
+    LOAM_CHECK(textures.mip_count == mips_of(textures.size_texels),
+               "build_layer_mips comes before save_layer");
     std::vector<uint8_t> bytes(kHeadBytes);
     std::memcpy(bytes.data(), kMagic, 8);
     put_u32(bytes.data() + 8, uint32_t(textures.size_texels));
     for (size_t mip = 0; mip < size_t(textures.mip_count); ++mip)
-        for (const auto* texture : {&textures.albedo_reveal, &textures.normal_gloss_occlusion, &textures.metalness}) {
+        for (const auto* texture :
+             {&textures.albedo_reveal, &textures.normal_gloss_occlusion, &textures.metalness}) {
             const size_t head = bytes.size();
             bytes.resize(head + 4);
             append_zstd_frame(texture->at(mip), kZstdLevel, bytes);
@@ -109,4 +112,4 @@ Result<LayerTextures> load_layer(const std::filesystem::path& file) {
     return textures;
 }
 
-} // namespace loam
+}  // namespace loam

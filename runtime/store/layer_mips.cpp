@@ -1,7 +1,8 @@
-// Mips of a layer's textures: 2x2 boxes, colours in linear light, normals by their vector mean. What the mean lost in
-// length is spread of direction, which goes into the gloss, so that distant ground does not glitter.
-// Source: the Infinite Warfare talk ("Texture Packer"); the length-to-roughness fit is that of a von Mises-Fisher
-// lobe, kappa = (3 r - r^3) / (1 - r^2), alpha'^2 = alpha^2 + 2 / kappa (Neubelt and Pettineo 2013).
+// Mips of a layer's textures: 2x2 boxes, colours in linear light, normals by their vector mean. What the mean
+// lost in length is spread of direction, which goes into the gloss, so that distant ground does not glitter.
+// Source: the Infinite Warfare talk ("Texture Packer"); the length-to-roughness fit is that of a von
+// Mises-Fisher lobe, kappa = (3 r - r^3) / (1 - r^2), alpha'^2 = alpha^2 + 2 / kappa (Neubelt and Pettineo
+// 2013).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -63,11 +64,12 @@ void shrink_normal(const uint8_t* fine, uint8_t* coarse, const Quad& quad) {
         y += ny / 4;
         z += std::sqrt(std::max(0.0, 1 - nx * nx - ny * ny)) / 4;
         const double roughness = 1 - t[2] / 255.0;
-        alpha2 += roughness * roughness * roughness * roughness / 4; // alpha = roughness^2
+        alpha2 += roughness * roughness * roughness * roughness / 4;  // alpha = roughness^2
         occlusion += t[3];
     }
     const double length = std::min(1.0, std::sqrt(x * x + y * y + z * z));
-    if (length < 1 - 1e-5) alpha2 += 2 * (1 - length * length) / std::max(1e-6, 3 * length - length * length * length);
+    if (length < 1 - 1e-5)
+        alpha2 += 2 * (1 - length * length) / std::max(1e-6, 3 * length - length * length * length);
     const double scale = length > 1e-6 ? 1 / length : 0;
     coarse[0] = byte_of((x * scale + 1) / 2);
     coarse[1] = byte_of((y * scale + 1) / 2);
@@ -81,15 +83,18 @@ void shrink_metal(const uint8_t* fine, uint8_t* coarse, const Quad& quad) {
     *coarse = uint8_t((sum + 2) / 4);
 }
 
-} // namespace
+}  // namespace
 
 void build_layer_mips(LayerTextures& textures) {
     const int size = textures.size_texels;
-    LOAM_CHECK(size >= 4 && size <= 4096 && (size & (size - 1)) == 0, "layer size must be a power of two, 4 … 4096");
-    LOAM_CHECK(!textures.albedo_reveal.empty() && !textures.normal_gloss_occlusion.empty() && !textures.metalness.empty(),
+    LOAM_CHECK(size >= 4 && size <= 4096 && (size & (size - 1)) == 0,
+               "layer size must be a power of two, 4 … 4096");
+    LOAM_CHECK(!textures.albedo_reveal.empty() && !textures.normal_gloss_occlusion.empty() &&
+                   !textures.metalness.empty(),
                "mip 0 of a layer is missing");
     const size_t texels = size_t(size) * size_t(size);
-    LOAM_CHECK(textures.albedo_reveal[0].size() == 4 * texels && textures.normal_gloss_occlusion[0].size() == 4 * texels &&
+    LOAM_CHECK(textures.albedo_reveal[0].size() == 4 * texels &&
+                   textures.normal_gloss_occlusion[0].size() == 4 * texels &&
                    textures.metalness[0].size() == texels,
                "mip 0 of a layer has a wrong size");
     textures.mip_count = 1;
@@ -108,13 +113,15 @@ void build_layer_mips(LayerTextures& textures) {
             for (int x = 0; x < side; ++x) {
                 const Quad quad(x, y, side);
                 const size_t to = size_t(y) * size_t(side) + size_t(x);
-                shrink_albedo(textures.albedo_reveal[mip - 1].data(), &textures.albedo_reveal[mip][4 * to], quad);
-                shrink_normal(textures.normal_gloss_occlusion[mip - 1].data(), &textures.normal_gloss_occlusion[mip][4 * to],
+                shrink_albedo(textures.albedo_reveal[mip - 1].data(), &textures.albedo_reveal[mip][4 * to],
                               quad);
+                shrink_normal(textures.normal_gloss_occlusion[mip - 1].data(),
+                              &textures.normal_gloss_occlusion[mip][4 * to], quad);
                 shrink_metal(textures.metalness[mip - 1].data(), &textures.metalness[mip][to], quad);
             }
     }
-    textures.has_metal = std::any_of(textures.metalness[0].begin(), textures.metalness[0].end(), [](uint8_t m) { return m > 0; });
+    textures.has_metal = std::any_of(textures.metalness[0].begin(), textures.metalness[0].end(),
+                                     [](uint8_t m) { return m > 0; });
 }
 
-} // namespace loam
+}  // namespace loam

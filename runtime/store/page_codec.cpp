@@ -49,7 +49,8 @@ Result<std::span<const uint8_t>> read_constant(std::span<const uint8_t> blob, si
     return blob.subspan(1, value_bytes);
 }
 
-// Median edge detector on wrapping 32-bit numbers; exact for any input as encoder and decoder compute the same.
+// Median edge detector on wrapping 32-bit numbers; exact for any input as encoder and decoder compute the
+// same.
 uint32_t predict(uint32_t left, uint32_t up, uint32_t up_left) {
     const int32_t a = int32_t(left), b = int32_t(up), c = int32_t(up_left);
     const int32_t low = std::min(a, b), high = std::max(a, b);
@@ -72,7 +73,7 @@ uint32_t unzigzag(uint32_t v) {
     return (v >> 1) ^ (v & 1 ? 0xffffffffu : 0u);
 }
 
-} // namespace
+}  // namespace
 
 std::vector<uint8_t> encode_height_page(std::span<const int32_t, kBasePageSamples> mm) {
     if (std::all_of(mm.begin(), mm.end(), [&](int32_t v) { return v == mm[0]; })) {
@@ -85,7 +86,8 @@ std::vector<uint8_t> encode_height_page(std::span<const int32_t, kBasePageSample
         for (int x = 0; x < kSide; ++x) {
             const int i = y * kSide + x;
             const uint32_t code = zigzag(uint32_t(mm[i]) - predict_at(mm.data(), x, y));
-            for (int plane = 0; plane < 4; ++plane) planes[plane * kSamples + i] = uint8_t(code >> (8 * plane));
+            for (int plane = 0; plane < 4; ++plane)
+                planes[plane * kSamples + i] = uint8_t(code >> (8 * plane));
         }
     std::vector<uint8_t> blob{kPackedHeight};
     append_zstd_frame(planes, kZstdLevel, blob);
@@ -107,7 +109,8 @@ Status decode_height_page(std::span<const uint8_t> blob, std::span<int32_t, kBas
         for (int x = 0; x < kSide; ++x) {
             const int i = y * kSide + x;
             uint32_t code = 0;
-            for (int plane = 0; plane < 4; ++plane) code |= uint32_t(planes[plane * kSamples + i]) << (8 * plane);
+            for (int plane = 0; plane < 4; ++plane)
+                code |= uint32_t(planes[plane * kSamples + i]) << (8 * plane);
             mm[i] = int32_t(predict_at(mm.data(), x, y) + unzigzag(code));
         }
     return {};
@@ -115,7 +118,8 @@ Status decode_height_page(std::span<const uint8_t> blob, std::span<int32_t, kBas
 
 std::vector<uint8_t> encode_index_page(std::span<const IndexTexel, kBasePageSamples> texels) {
     const auto bytes_of = [](const IndexTexel& t) {
-        return std::array<uint8_t, 5>{uint8_t(t.layer), uint8_t(t.layer >> 8), t.tint[0], t.tint[1], t.tint[2]};
+        return std::array<uint8_t, 5>{uint8_t(t.layer), uint8_t(t.layer >> 8), t.tint[0], t.tint[1],
+                                      t.tint[2]};
     };
     LOAM_CHECK(std::all_of(texels.begin(), texels.end(), [](const IndexTexel& t) { return t.unused == 0; }),
                "the unused byte of an index texel must be 0");
@@ -152,4 +156,4 @@ Status decode_index_page(std::span<const uint8_t> blob, std::span<IndexTexel, kB
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

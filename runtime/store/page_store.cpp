@@ -9,10 +9,11 @@ namespace loam {
 
 namespace {
 
-constexpr int64_t kApplicationId = 0x4C6F616D; // "Loam"
+constexpr int64_t kApplicationId = 0x4C6F616D;  // "Loam"
 constexpr int64_t kVersion = 1;
 
-// 8 KiB pages: most blobs (1–6 KiB) fit one without an overflow chain, and a small command rewrites few of them.
+// 8 KiB pages: most blobs (1–6 KiB) fit one without an overflow chain, and a small command rewrites few of
+// them.
 constexpr const char* kSetUp = R"(
 PRAGMA page_size = 8192;
 PRAGMA journal_mode = WAL;
@@ -43,14 +44,16 @@ Status check_identity(Database& database) {
     const auto application = database.query_integer("PRAGMA application_id");
     if (!application.ok()) return application.error();
     if (*application != kApplicationId)
-        return error("{} is not a terrain database: it is a SQLite file of another program", database.file().string());
+        return error("{} is not a terrain database: it is a SQLite file of another program",
+                     database.file().string());
     const auto version = database.query_integer("PRAGMA user_version");
     if (!version.ok()) return version.error();
     if (*version > kVersion)
         return error("{} was written by a newer Loam (format {}, this one reads up to {}); update Loam",
                      database.file().string(), *version, kVersion);
     if (*version != kVersion)
-        return error("{} has the unknown format {}, {} expected", database.file().string(), *version, kVersion);
+        return error("{} has the unknown format {}, {} expected", database.file().string(), *version,
+                     kVersion);
     return {};
 }
 
@@ -74,7 +77,7 @@ struct ResetOnExit {
     ~ResetOnExit() { statement.reset(); }
 };
 
-} // namespace
+}  // namespace
 
 Result<PageStore> PageStore::open(const std::filesystem::path& file, DatabaseMode mode) {
     auto database = Database::open(file, mode);
@@ -98,13 +101,15 @@ Status PageStore::prepare_all() {
         {&write_page_, "INSERT INTO page VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET blob = excluded.blob"},
         {&erase_page_, "DELETE FROM page WHERE key = ?"},
         {&read_operator_, "SELECT json FROM operator WHERE id = ?"},
-        {&write_operator_, "INSERT INTO operator VALUES (?, ?) ON CONFLICT (id) DO UPDATE SET json = excluded.json"},
+        {&write_operator_,
+         "INSERT INTO operator VALUES (?, ?) ON CONFLICT (id) DO UPDATE SET json = excluded.json"},
         {&erase_operator_, "DELETE FROM operator WHERE id = ?"},
         {&write_journal_, "INSERT OR REPLACE INTO journal VALUES (?, ?, ?, ?, ?, ?)"},
         {&read_journal_, "SELECT grp, applied, json, images, dirt FROM journal WHERE sequence = ?"},
         {&erase_undone_, "DELETE FROM journal WHERE applied = 0"},
         {&read_meta_, "SELECT value FROM meta WHERE name = ?"},
-        {&write_meta_, "INSERT INTO meta VALUES (?, ?) ON CONFLICT (name) DO UPDATE SET value = excluded.value"},
+        {&write_meta_,
+         "INSERT INTO meta VALUES (?, ?) ON CONFLICT (name) DO UPDATE SET value = excluded.value"},
     };
     for (const auto& [statement, sql] : all) {
         auto prepared = database_.prepare(sql);
@@ -235,8 +240,8 @@ Status PageStore::erase_undone() {
 
 Result<std::vector<PageStore::JournalHead>> PageStore::journal_heads() {
     std::vector<JournalHead> heads;
-    const Status status =
-        for_each_row(database_, "SELECT sequence, grp, applied FROM journal ORDER BY sequence", 0, [&](Statement& row) {
+    const Status status = for_each_row(
+        database_, "SELECT sequence, grp, applied FROM journal ORDER BY sequence", 0, [&](Statement& row) {
             heads.push_back({uint64_t(row.integer(0)), uint64_t(row.integer(1)), row.integer(2) != 0});
             return Status();
         });
@@ -247,8 +252,10 @@ Result<std::vector<PageStore::JournalHead>> PageStore::journal_heads() {
 Status PageStore::for_each_journal(uint64_t first, JournalColumns columns,
                                    const std::function<Status(const JournalRow&)>& visit) {
     const bool all = columns == JournalColumns::all;
-    const char* sql = all ? "SELECT sequence, grp, applied, json, images, dirt FROM journal WHERE sequence >= ? ORDER BY sequence"
-                          : "SELECT sequence, grp, applied, json FROM journal WHERE sequence >= ? ORDER BY sequence";
+    const char* sql =
+        all ? "SELECT sequence, grp, applied, json, images, dirt FROM journal WHERE sequence >= ? ORDER BY "
+              "sequence"
+            : "SELECT sequence, grp, applied, json FROM journal WHERE sequence >= ? ORDER BY sequence";
     return for_each_row(database_, sql, int64_t(first), [&](Statement& from) {
         JournalRow row{.sequence = uint64_t(from.integer(0)),
                        .group = uint64_t(from.integer(1)),
@@ -309,4 +316,4 @@ uint64_t PageStore::file_bytes() const {
     return bytes;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -1,5 +1,5 @@
-// terrain.db: base pages as blobs, operators as JSON, the command journal. What the blobs and texts mean is the
-// document's business; this file knows rows.
+// terrain.db: base pages as blobs, operators as JSON, the command journal. What the blobs and texts mean is
+// the document's business; this file knows rows.
 //
 // | table | columns |
 // | --- | --- |
@@ -10,8 +10,9 @@
 //
 // PageKey, packed: | bits 52–57 map | 46–51 mip | 23–45 y | 0–22 x |
 //
-// WAL with synchronous = NORMAL: a killed process loses nothing that was committed; a power cut may lose the last commits but
-// never leaves half of one. Foreign keys are off, as there are none. A connection is used by one thread at a time.
+// WAL with synchronous = NORMAL: a killed process loses nothing that was committed; a power cut may lose the
+// last commits but never leaves half of one. Foreign keys are off, as there are none. A connection is used by
+// one thread at a time.
 #pragma once
 
 #include <cstdint>
@@ -32,7 +33,7 @@ enum class BaseMap : uint8_t { height = 0, index = 1 };
 
 struct PageKey {
     BaseMap map = BaseMap::height;
-    int mip = 0, x = 0, y = 0; // in pages of that mip
+    int mip = 0, x = 0, y = 0;  // in pages of that mip
     [[nodiscard]] int64_t packed() const {
         return int64_t(map) << 52 | int64_t(mip) << 46 | int64_t(y) << 23 | int64_t(x);
     }
@@ -46,7 +47,7 @@ struct JournalRow {
     uint64_t sequence = 0, group = 0;
     bool applied = true;
     std::string json;
-    std::vector<uint8_t> images; // what the command replaced (applied) or what redo will put back (undone)
+    std::vector<uint8_t> images;  // what the command replaced (applied) or what redo will put back (undone)
     std::vector<uint8_t> dirt;
 };
 
@@ -57,13 +58,13 @@ class PageStore {
 
     // A transaction of several writes. Without one every write is its own.
     Status begin();
-    Status commit(); // on an error the transaction is rolled back
+    Status commit();  // on an error the transaction is rolled back
     void rollback();
-    Status begin_reading(); // from now on this connection sees one state; ends with the connection
+    Status begin_reading();  // from now on this connection sees one state; ends with the connection
 
     Result<std::optional<std::vector<uint8_t>>> read_page(int64_t key);
     Status write_page(int64_t key, std::span<const uint8_t> blob);
-    Status erase_page(int64_t key); // absent already: fine
+    Status erase_page(int64_t key);  // absent already: fine
     // In ascending order of keys; the visitor's error ends the walk.
     Status for_each_page(const std::function<Status(int64_t key, std::span<const uint8_t> blob)>& visit);
     Result<int64_t> page_count(BaseMap map);
@@ -73,26 +74,28 @@ class PageStore {
     Status erase_operator(uint64_t id);
     Status for_each_operator(const std::function<Status(uint64_t id, const std::string& json)>& visit);
 
-    Status write_journal(const JournalRow& row); // inserts or replaces
+    Status write_journal(const JournalRow& row);  // inserts or replaces
     Result<JournalRow> read_journal(uint64_t sequence);
     Status erase_undone();
     struct JournalHead {
         uint64_t sequence = 0, group = 0;
         bool applied = true;
     };
-    Result<std::vector<JournalHead>> journal_heads(); // ascending
+    Result<std::vector<JournalHead>> journal_heads();  // ascending
     // Ascending from `first`; images and dirt only if asked for, as they are large.
     enum class JournalColumns { text, all };
-    Status for_each_journal(uint64_t first, JournalColumns columns, const std::function<Status(const JournalRow&)>& visit);
+    Status for_each_journal(uint64_t first, JournalColumns columns,
+                            const std::function<Status(const JournalRow&)>& visit);
 
     Result<std::optional<int64_t>> read_meta(std::string_view name);
     Status write_meta(std::string_view name, int64_t value);
 
-    Status checkpoint(); // moves the WAL into the database and empties it
-    // Moves the WAL into the database when it has grown to 16 MB: call it where waiting for the disk hurts nobody.
+    Status checkpoint();  // moves the WAL into the database and empties it
+    // Moves the WAL into the database when it has grown to 16 MB: call it where waiting for the disk hurts
+    // nobody.
     Status checkpoint_when_due();
-    Result<std::vector<std::string>> quick_check(); // SQLite's own complaints; none: sound
-    [[nodiscard]] uint64_t file_bytes() const;      // database and WAL
+    Result<std::vector<std::string>> quick_check();  // SQLite's own complaints; none: sound
+    [[nodiscard]] uint64_t file_bytes() const;       // database and WAL
 
   private:
     Status prepare_all();
@@ -104,4 +107,4 @@ class PageStore {
     Statement write_journal_, read_journal_, erase_undone_, read_meta_, write_meta_;
 };
 
-} // namespace loam
+}  // namespace loam

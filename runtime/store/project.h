@@ -13,15 +13,15 @@
 namespace loam {
 
 struct LayerEntry {
-    std::string name;      // "grass"; unique in a project
-    std::string file;      // "layers/grass.layer", relative to the project (layer_file.h)
-    double tile_m = 2.0;   // world size of one repeat of its textures
+    std::string name;     // "grass"; unique in a project
+    std::string file;     // "layers/grass.layer", relative to the project (layer_file.h)
+    double tile_m = 2.0;  // world size of one repeat of its textures
 };
 
 // Which layers events use, by name; an empty or unknown name falls back to layer 0.
 struct LayerRoles {
-    std::string scorched = "dirt"; // crater floors
-    std::string broken = "scree";  // crater rims and ejecta
+    std::string scorched = "dirt";  // crater floors
+    std::string broken = "scree";   // crater rims and ejecta
 };
 
 struct ProjectSettings {
@@ -29,15 +29,15 @@ struct ProjectSettings {
     // Height base map: samples (i, j) at world (i, j) * height_spacing_m, 0 <= i < height_samples_x.
     int height_samples_x = 0, height_samples_y = 0;
     double height_spacing_m = 1.0;
-    int refine = 0;               // the height map's level 0 has spacing height_spacing_m / 2^refine
-    double index_spacing_m = 1.0; // 2^k metres, 0.25 … 64
-    int32_t default_height_mm = 0; // of pages never written
-    uint16_t default_layer = 0;    // index of pages never written
+    int refine = 0;                 // the height map's level 0 has spacing height_spacing_m / 2^refine
+    double index_spacing_m = 1.0;   // 2^k metres, 0.25 … 64
+    int32_t default_height_mm = 0;  // of pages never written
+    uint16_t default_layer = 0;     // index of pages never written
     std::vector<LayerEntry> layers;
     LayerRoles roles;
-    double sun_azimuth_rad = 3.9;   // clockwise from north, where the sun stands
+    double sun_azimuth_rad = 3.9;  // clockwise from north, where the sun stands
     double sun_elevation_rad = 0.6;
-    double haze_per_km = 0.03;      // extinction at sea level, 1/km
+    double haze_per_km = 0.03;  // extinction at sea level, 1/km
 
     [[nodiscard]] WorldRect bounds() const {
         return {0, 0, (height_samples_x - 1) * height_spacing_m, (height_samples_y - 1) * height_spacing_m};
@@ -50,7 +50,8 @@ struct ProjectSettings {
 [[nodiscard]] Result<ProjectSettings> load_project(const std::filesystem::path& folder);
 // Writes to a temporary file and renames it.
 [[nodiscard]] Status save_project(const std::filesystem::path& folder, const ProjectSettings& settings);
-// Everything that must hold: sizes, spacings, ranges, finite numbers, at least one layer or none, unique names.
+// Everything that must hold: sizes, spacings, ranges, finite numbers, at least one layer or none, unique
+// names.
 [[nodiscard]] Status check_settings(const ProjectSettings& settings);
 
-} // namespace loam
+}  // namespace loam

@@ -46,7 +46,8 @@ void read_table(const toml::table& table, const char* place, const Readers& read
         if (reader == readers.end()) {
             std::string known;
             for (const auto& [name, unused] : readers) known += (known.empty() ? "" : ", ") + name;
-            throw Refused{fmt::format("unknown key \"{}\" in {} (known: {})", std::string_view(key.str()), place, known),
+            throw Refused{fmt::format("unknown key \"{}\" in {} (known: {})", std::string_view(key.str()),
+                                      place, known),
                           key.source().begin};
         }
         reader->second(node);
@@ -87,10 +88,11 @@ int64_t whole_of(const toml::node& node, const char* name, int64_t low, int64_t 
 LayerEntry layer_of(const toml::node& node) {
     LayerEntry layer;
     const toml::table& table = table_of(node, "layer");
-    read_table(table, "[[layer]]",
-               {{"name", [&](const toml::node& n) { layer.name = string_of(n, "name"); }},
-                {"file", [&](const toml::node& n) { layer.file = string_of(n, "file"); }},
-                {"tile_m", [&](const toml::node& n) { layer.tile_m = number_of(n, "tile_m", 0.01, 10000); }}});
+    read_table(
+        table, "[[layer]]",
+        {{"name", [&](const toml::node& n) { layer.name = string_of(n, "name"); }},
+         {"file", [&](const toml::node& n) { layer.file = string_of(n, "file"); }},
+         {"tile_m", [&](const toml::node& n) { layer.tile_m = number_of(n, "tile_m", 0.01, 10000); }}});
     if (layer.name.empty()) refuse(node, "a layer needs a name");
     return layer;
 }
@@ -101,7 +103,8 @@ ProjectSettings settings_of(const toml::table& root) {
     const auto read_terrain = [&](const toml::node& node) {
         const auto samples = [&](const toml::node& n) {
             const auto* pair = n.as_array();
-            if (!pair || pair->size() != 2) refuse(n, "height_samples must be [east, north], two whole numbers");
+            if (!pair || pair->size() != 2)
+                refuse(n, "height_samples must be [east, north], two whole numbers");
             s.height_samples_x = int(whole_of(*pair->get(0), "height_samples (x)", 2, 1 << 17));
             s.height_samples_y = int(whole_of(*pair->get(1), "height_samples (y)", 2, 1 << 17));
             has_samples = true;
@@ -110,30 +113,37 @@ ProjectSettings settings_of(const toml::table& root) {
             s.refine = int(whole_of(n, "refine", 0, 6));
             has_refine = true;
         };
-        read_table(table_of(node, "terrain"), "[terrain]",
-                   {{"height_samples", samples},
-                    {"refine", refine},
-                    {"height_spacing_m",
-                     [&](const toml::node& n) { s.height_spacing_m = number_of(n, "height_spacing_m", 0.01, 1000); }},
-                    {"index_spacing_m",
-                     [&](const toml::node& n) { s.index_spacing_m = number_of(n, "index_spacing_m", 0.25, 64); }},
-                    {"default_height_mm",
-                     [&](const toml::node& n) {
-                         s.default_height_mm = int32_t(whole_of(n, "default_height_mm", -16384000, 16384000));
-                     }},
-                    {"default_layer",
-                     [&](const toml::node& n) { s.default_layer = uint16_t(whole_of(n, "default_layer", 0, 65535)); }}});
+        read_table(
+            table_of(node, "terrain"), "[terrain]",
+            {{"height_samples", samples},
+             {"refine", refine},
+             {"height_spacing_m",
+              [&](const toml::node& n) {
+                  s.height_spacing_m = number_of(n, "height_spacing_m", 0.01, 1000);
+              }},
+             {"index_spacing_m",
+              [&](const toml::node& n) { s.index_spacing_m = number_of(n, "index_spacing_m", 0.25, 64); }},
+             {"default_height_mm",
+              [&](const toml::node& n) {
+                  s.default_height_mm = int32_t(whole_of(n, "default_height_mm", -16384000, 16384000));
+              }},
+             {"default_layer", [&](const toml::node& n) {
+                  s.default_layer = uint16_t(whole_of(n, "default_layer", 0, 65535));
+              }}});
     };
     const auto read_sun = [&](const toml::node& node) {
         read_table(
             table_of(node, "sun"), "[sun]",
-            {{"azimuth_rad", [&](const toml::node& n) { s.sun_azimuth_rad = number_of(n, "azimuth_rad", -100, 100); }},
-             {"elevation_rad",
-              [&](const toml::node& n) { s.sun_elevation_rad = number_of(n, "elevation_rad", -1.5708, 1.5708); }}});
+            {{"azimuth_rad",
+              [&](const toml::node& n) { s.sun_azimuth_rad = number_of(n, "azimuth_rad", -100, 100); }},
+             {"elevation_rad", [&](const toml::node& n) {
+                  s.sun_elevation_rad = number_of(n, "elevation_rad", -1.5708, 1.5708);
+              }}});
     };
     const auto read_air = [&](const toml::node& node) {
-        read_table(table_of(node, "air"), "[air]",
-                   {{"haze_per_km", [&](const toml::node& n) { s.haze_per_km = number_of(n, "haze_per_km", 0, 100); }}});
+        read_table(table_of(node, "air"), "[air]", {{"haze_per_km", [&](const toml::node& n) {
+                                                         s.haze_per_km = number_of(n, "haze_per_km", 0, 100);
+                                                     }}});
     };
     const auto read_roles = [&](const toml::node& node) {
         read_table(table_of(node, "roles"), "[roles]",
@@ -183,13 +193,14 @@ std::string text_of(const ProjectSettings& s) {
     out += fmt::format("height_spacing_m = {}\nrefine = {}\n", toml_real(s.height_spacing_m), s.refine);
     out += fmt::format("index_spacing_m = {}\n", toml_real(s.index_spacing_m));
     out += fmt::format("default_height_mm = {}\ndefault_layer = {}\n", s.default_height_mm, s.default_layer);
-    out += fmt::format("\n[sun]\nazimuth_rad = {} # clockwise from north\nelevation_rad = {}\n", toml_real(s.sun_azimuth_rad),
-                       toml_real(s.sun_elevation_rad));
+    out += fmt::format("\n[sun]\nazimuth_rad = {} # clockwise from north\nelevation_rad = {}\n",
+                       toml_real(s.sun_azimuth_rad), toml_real(s.sun_elevation_rad));
     out += fmt::format("\n[air]\nhaze_per_km = {}\n", toml_real(s.haze_per_km));
-    out += fmt::format("\n[roles]\nscorched = {}\nbroken = {}\n", toml_text(s.roles.scorched), toml_text(s.roles.broken));
+    out += fmt::format("\n[roles]\nscorched = {}\nbroken = {}\n", toml_text(s.roles.scorched),
+                       toml_text(s.roles.broken));
     for (const LayerEntry& layer : s.layers)
-        out += fmt::format("\n[[layer]]\nname = {}\nfile = {}\ntile_m = {}\n", toml_text(layer.name), toml_text(layer.file),
-                           toml_real(layer.tile_m));
+        out += fmt::format("\n[[layer]]\nname = {}\nfile = {}\ntile_m = {}\n", toml_text(layer.name),
+                           toml_text(layer.file), toml_real(layer.tile_m));
     return out;
 }
 
@@ -211,11 +222,12 @@ Status write_whole(const std::filesystem::path& file, std::string_view text) {
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Result<ProjectSettings> load_project(const std::filesystem::path& folder) {
     std::error_code failure;
-    if (!std::filesystem::is_directory(folder, failure)) return error("there is no folder {}", folder.string());
+    if (!std::filesystem::is_directory(folder, failure))
+        return error("there is no folder {}", folder.string());
     const std::filesystem::path file = folder / "project.toml";
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return error("{} cannot be read: {}; is it a project?", file.string(), std::strerror(errno));
@@ -246,4 +258,4 @@ Status save_project(const std::filesystem::path& folder, const ProjectSettings& 
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

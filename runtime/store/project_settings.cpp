@@ -9,7 +9,7 @@ namespace loam {
 
 namespace {
 
-constexpr int kMaxSamples = 1 << 17; // 0.125 m over the largest map
+constexpr int kMaxSamples = 1 << 17;  // 0.125 m over the largest map
 constexpr size_t kMaxLayers = 1024;
 
 Status check_number(const char* name, double value, double low, double high) {
@@ -24,18 +24,20 @@ bool is_power_of_two(double value) {
 
 Status check_layer(const LayerEntry& layer, std::set<std::string>& names) {
     if (layer.name.empty()) return error("a layer has no name");
-    if (!names.insert(layer.name).second) return error("two layers are called \"{}\"; names must be unique", layer.name);
+    if (!names.insert(layer.name).second)
+        return error("two layers are called \"{}\"; names must be unique", layer.name);
     const std::filesystem::path file(layer.file);
     bool climbs = file.is_absolute();
     for (const auto& part : file) climbs |= part == "..";
     if (climbs)
-        return error("layer \"{}\": the file \"{}\" is outside the project; give a path relative to it", layer.name, layer.file);
+        return error("layer \"{}\": the file \"{}\" is outside the project; give a path relative to it",
+                     layer.name, layer.file);
     const Status tile = check_number("tile_m", layer.tile_m, 0.01, 10000);
     if (!tile.ok()) return error("layer \"{}\": {}", layer.name, tile.message());
     return {};
 }
 
-} // namespace
+}  // namespace
 
 int default_refine(double height_spacing_m) {
     int refine = 0;
@@ -49,16 +51,20 @@ Status check_settings(const ProjectSettings& settings) {
     LOAM_TRY(check_number("height_spacing_m", settings.height_spacing_m, 0.01, 1000));
     const WorldRect bounds = settings.bounds();
     if (bounds.width() > kMaxMapSize_m || bounds.height() > kMaxMapSize_m)
-        return error("the map is {} x {} m, the limit is {} m a side", bounds.width(), bounds.height(), kMaxMapSize_m);
+        return error("the map is {} x {} m, the limit is {} m a side", bounds.width(), bounds.height(),
+                     kMaxMapSize_m);
     LOAM_TRY(check_number("refine", settings.refine, 0, 6));
     LOAM_TRY(check_number("index_spacing_m", settings.index_spacing_m, 0.25, 64));
     if (!is_power_of_two(settings.index_spacing_m))
-        return error("index_spacing_m is {}, must be a power of two from 0.25 to 64", settings.index_spacing_m);
-    LOAM_TRY(check_number("default_height_mm", settings.default_height_mm, -kHeightLimit_mm, kHeightLimit_mm));
+        return error("index_spacing_m is {}, must be a power of two from 0.25 to 64",
+                     settings.index_spacing_m);
+    LOAM_TRY(
+        check_number("default_height_mm", settings.default_height_mm, -kHeightLimit_mm, kHeightLimit_mm));
     if (settings.layers.size() > kMaxLayers)
         return error("{} layers, the limit is {}", settings.layers.size(), kMaxLayers);
     if (settings.default_layer >= std::max<size_t>(1, settings.layers.size()))
-        return error("default_layer is {}, there are {} layers", settings.default_layer, settings.layers.size());
+        return error("default_layer is {}, there are {} layers", settings.default_layer,
+                     settings.layers.size());
     std::set<std::string> names;
     for (const LayerEntry& layer : settings.layers) LOAM_TRY(check_layer(layer, names));
     LOAM_TRY(check_number("azimuth_rad", settings.sun_azimuth_rad, -100, 100));
@@ -67,4 +73,4 @@ Status check_settings(const ProjectSettings& settings) {
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

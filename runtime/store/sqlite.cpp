@@ -15,17 +15,24 @@ namespace {
 
 Error sentence(sqlite3* database, int code, std::string_view place) {
     switch (code & 0xff) {
-        case SQLITE_FULL: return error("the disk is full while writing {}; nothing of this step was kept", place);
+        case SQLITE_FULL:
+            return error("the disk is full while writing {}; nothing of this step was kept", place);
         case SQLITE_BUSY:
-        case SQLITE_LOCKED: return error("{} is locked by another program that writes it; close that one first", place);
-        case SQLITE_READONLY: return error("{} cannot be written: the file or its folder is read-only", place);
-        case SQLITE_NOTADB: return error("{} is not a terrain database", place);
-        case SQLITE_CORRUPT: return error("{} is damaged: {}", place, sqlite3_errmsg(database));
-        case SQLITE_CANTOPEN: return error("cannot open {}: {}", place, std::strerror(sqlite3_system_errno(database)));
+        case SQLITE_LOCKED:
+            return error("{} is locked by another program that writes it; close that one first", place);
+        case SQLITE_READONLY:
+            return error("{} cannot be written: the file or its folder is read-only", place);
+        case SQLITE_NOTADB:
+            return error("{} is not a terrain database", place);
+        case SQLITE_CORRUPT:
+            return error("{} is damaged: {}", place, sqlite3_errmsg(database));
+        case SQLITE_CANTOPEN:
+            return error("cannot open {}: {}", place, std::strerror(sqlite3_system_errno(database)));
         case SQLITE_IOERR:
             return error("cannot read or write {}: {} ({})", place, sqlite3_errmsg(database),
                          std::strerror(sqlite3_system_errno(database)));
-        default: return error("{}: {}", place, sqlite3_errmsg(database));
+        default:
+            return error("{}: {}", place, sqlite3_errmsg(database));
     }
 }
 
@@ -39,7 +46,8 @@ Status check_file_header(const std::filesystem::path& file) {
     stream.read(head.data(), head.size());
     if (stream.gcount() == 0) return error("{} is empty; it is not a terrain database", file.string());
     if (std::memcmp(head.data(), "SQLite format 3", 16) == 0) return {};
-    if (head == std::array<char, 16>{}) return error("{} begins with zeros; it is not a terrain database", file.string());
+    if (head == std::array<char, 16>{})
+        return error("{} begins with zeros; it is not a terrain database", file.string());
     return error("{} is not a terrain database", file.string());
 }
 
@@ -54,20 +62,22 @@ std::string uri_of(const std::filesystem::path& file, const char* query) {
     return uri + query;
 }
 
-} // namespace
+}  // namespace
 
 void Statement::Finalize::operator()(sqlite3_stmt* statement) const {
     sqlite3_finalize(statement);
 }
 void Statement::bind(int parameter, int64_t value) {
-    LOAM_CHECK(sqlite3_bind_int64(handle_.get(), parameter, value) == SQLITE_OK, "bad parameter of a statement");
+    LOAM_CHECK(sqlite3_bind_int64(handle_.get(), parameter, value) == SQLITE_OK,
+               "bad parameter of a statement");
 }
 void Statement::bind(int parameter, double value) {
-    LOAM_CHECK(sqlite3_bind_double(handle_.get(), parameter, value) == SQLITE_OK, "bad parameter of a statement");
+    LOAM_CHECK(sqlite3_bind_double(handle_.get(), parameter, value) == SQLITE_OK,
+               "bad parameter of a statement");
 }
 void Statement::bind(int parameter, std::string_view text) {
-    LOAM_CHECK(sqlite3_bind_text64(handle_.get(), parameter, text.data(), text.size(), SQLITE_STATIC, SQLITE_UTF8) ==
-                   SQLITE_OK,
+    LOAM_CHECK(sqlite3_bind_text64(handle_.get(), parameter, text.data(), text.size(), SQLITE_STATIC,
+                                   SQLITE_UTF8) == SQLITE_OK,
                "bad parameter of a statement");
 }
 void Statement::bind(int parameter, std::span<const uint8_t> blob) {
@@ -111,7 +121,8 @@ std::string Statement::text(int column) const {
 }
 std::span<const uint8_t> Statement::blob(int column) const {
     const auto* data = static_cast<const uint8_t*>(sqlite3_column_blob(handle_.get(), column));
-    return data ? std::span(data, size_t(sqlite3_column_bytes(handle_.get(), column))) : std::span<const uint8_t>();
+    return data ? std::span(data, size_t(sqlite3_column_bytes(handle_.get(), column)))
+                : std::span<const uint8_t>();
 }
 
 void Database::Close::operator()(sqlite3* database) const {
@@ -130,7 +141,8 @@ Result<Database> Database::open(const std::filesystem::path& file, DatabaseMode 
     Database database;
     database.file_ = file;
     sqlite3* handle = nullptr;
-    const int code = sqlite3_open_v2(uri_of(file, frozen ? "?immutable=1" : "").c_str(), &handle, flags, nullptr);
+    const int code =
+        sqlite3_open_v2(uri_of(file, frozen ? "?immutable=1" : "").c_str(), &handle, flags, nullptr);
     database.handle_.reset(handle);
     if (code != SQLITE_OK) return sentence(handle, code, file.string());
     sqlite3_busy_timeout(handle, 2000);
@@ -154,7 +166,8 @@ Status Database::execute(const char* sql) {
 
 Result<Statement> Database::prepare(std::string_view sql) {
     sqlite3_stmt* handle = nullptr;
-    const int code = sqlite3_prepare_v3(handle_.get(), sql.data(), int(sql.size()), SQLITE_PREPARE_PERSISTENT, &handle, nullptr);
+    const int code = sqlite3_prepare_v3(handle_.get(), sql.data(), int(sql.size()), SQLITE_PREPARE_PERSISTENT,
+                                        &handle, nullptr);
     if (code != SQLITE_OK) return sentence(handle_.get(), code, file_.string());
     Statement statement;
     statement.handle_.reset(handle);
@@ -171,4 +184,4 @@ Result<int64_t> Database::query_integer(std::string_view sql) {
     return statement->integer(0);
 }
 
-} // namespace loam
+}  // namespace loam

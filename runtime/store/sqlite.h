@@ -33,7 +33,7 @@ class Statement {
     [[nodiscard]] int64_t integer(int column) const;
     [[nodiscard]] double real(int column) const;
     [[nodiscard]] std::string text(int column) const;
-    [[nodiscard]] std::span<const uint8_t> blob(int column) const; // valid until the next step or reset
+    [[nodiscard]] std::span<const uint8_t> blob(int column) const;  // valid until the next step or reset
 
   private:
     friend class Database;
@@ -41,7 +41,7 @@ class Statement {
         void operator()(sqlite3_stmt* statement) const;
     };
     std::unique_ptr<sqlite3_stmt, Finalize> handle_;
-    std::string place_; // the database's file, for messages
+    std::string place_;  // the database's file, for messages
 };
 
 enum class DatabaseMode { read_only, read_write, create };
@@ -55,7 +55,8 @@ class Database {
     Result<Statement> prepare(std::string_view sql);
     Result<int64_t> query_integer(std::string_view sql);
     [[nodiscard]] const std::filesystem::path& file() const { return file_; }
-    // Frames in the write-ahead log after this connection's last commit. Turns SQLite's own checkpoints off when called first.
+    // Frames in the write-ahead log after this connection's last commit. Turns SQLite's own checkpoints off
+    // when called first.
     void count_wal_frames();
     [[nodiscard]] int wal_frames() const { return wal_frames_ ? *wal_frames_ : 0; }
 
@@ -63,9 +64,9 @@ class Database {
     struct Close {
         void operator()(sqlite3* database) const;
     };
-    std::unique_ptr<int> wal_frames_; // on the heap, where SQLite's hook finds it after a move
+    std::unique_ptr<int> wal_frames_;  // on the heap, where SQLite's hook finds it after a move
     std::unique_ptr<sqlite3, Close> handle_;
     std::filesystem::path file_;
 };
 
-} // namespace loam
+}  // namespace loam

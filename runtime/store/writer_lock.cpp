@@ -19,7 +19,8 @@ Result<WriterLock> WriterLock::acquire(const std::filesystem::path& folder) {
                      folder.string(), std::strerror(errno));
     if (flock(lock.descriptor_, LOCK_EX | LOCK_NB) != 0) {
         if (errno == EWOULDBLOCK)
-            return error("{} is open for writing elsewhere; close the other editor or open it read-only", folder.string());
+            return error("{} is open for writing elsewhere; close the other editor or open it read-only",
+                         folder.string());
         return error("cannot lock {}: {}", file.string(), std::strerror(errno));
     }
     return lock;
@@ -34,4 +35,4 @@ WriterLock& WriterLock::operator=(WriterLock&& other) noexcept {
     return *this;
 }
 
-} // namespace loam
+}  // namespace loam

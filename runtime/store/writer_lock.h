@@ -1,5 +1,6 @@
-// One writer a project: an exclusive flock on `terrain.lock`. A file of its own, because closing any descriptor of
-// terrain.db would drop SQLite's POSIX locks on it. The kernel lets go of it when the process ends, however it ends.
+// One writer a project: an exclusive flock on `terrain.lock`. A file of its own, because closing any
+// descriptor of terrain.db would drop SQLite's POSIX locks on it. The kernel lets go of it when the process
+// ends, however it ends.
 #pragma once
 
 #include <filesystem>
@@ -20,4 +21,4 @@ class WriterLock {
     int descriptor_ = -1;
 };
 
-} // namespace loam
+}  // namespace loam

@@ -1,21 +1,23 @@
 // The shape and marks of an impact crater, the same in GLSL and C++.
 //
-// Inputs everywhere: `local`: position from the centre, in units of the crater's radius (x east, y north); `seed`: the crater's.
-// Everything is exactly 0 for |local| >= the reach named beside it. All functions are C1 in position except crater_zone.
+// Inputs everywhere: `local`: position from the centre, in units of the crater's radius (x east, y north);
+// `seed`: the crater's. Everything is exactly 0 for |local| >= the reach named beside it. All functions are
+// C1 in position except crater_zone.
 //
-// Profile over rho = |local| / rim(direction): a bowl -d + (d + h) (2 rho^2 - rho^4) up to the crest at rho = 1, then ejecta
-// h (1 - u)^6 (1 + 6 u), which is about rho^-3 (McGetchin et al. 1973) but ends, with slope 0, at kCraterEjectaEnd.
-// Rim height: Pike (1977) measured 0.036 D^1.01 km for simple craters, with depth 0.2 D below the rim: h is about a third of
-// the depth below the old ground, 0.35 d here, which is 0.14 R for the default depth of 0.4 R.
+// Profile over rho = |local| / rim(direction): a bowl -d + (d + h) (2 rho^2 - rho^4) up to the crest at rho =
+// 1, then ejecta h (1 - u)^6 (1 + 6 u), which is about rho^-3 (McGetchin et al. 1973) but ends, with slope 0,
+// at kCraterEjectaEnd. Rim height: Pike (1977) measured 0.036 D^1.01 km for simple craters, with depth 0.2 D
+// below the rim: h is about a third of the depth below the old ground, 0.35 d here, which is 0.14 R for the
+// default depth of 0.4 R.
 #ifndef LOAM_CRATER_MATH_H
 #define LOAM_CRATER_MATH_H
 #include "shaders/document/noise_math.h"
 LOAM_BEGIN_SHARED
 
-#define kCraterHeightReach 2.6f // of crater_height, in radii
-#define kCraterMarkReach 3.2f   // of crater_rays, crater_scorch, crater_zone, in radii
-#define kCraterRimShare 0.35f   // rim height / depth below the old ground
-#define kCraterEjectaEnd 2.36f  // times the largest rim, 1.1, stays below the height reach
+#define kCraterHeightReach 2.6f  // of crater_height, in radii
+#define kCraterMarkReach 3.2f    // of crater_rays, crater_scorch, crater_zone, in radii
+#define kCraterRimShare 0.35f    // rim height / depth below the old ground
+#define kCraterEjectaEnd 2.36f   // times the largest rim, 1.1, stays below the height reach
 
 // Where the crest lies in this direction (a unit vector), 0.9 … 1.1.
 LOAM_INLINE float crater_rim(vec2 direction, uint seed) {
@@ -34,7 +36,8 @@ LOAM_INLINE float crater_height(vec2 local, float depth, uint seed) {
     vec2 direction = local / r;
     float rho = r / crater_rim(direction, seed);
     if (rho >= kCraterEjectaEnd) return 0.0f;
-    float rim = depth * kCraterRimShare * (1.0f + 0.3f * noise_value(direction * 2.1f, noise_hash(seed + 3u)));
+    float rim =
+        depth * kCraterRimShare * (1.0f + 0.3f * noise_value(direction * 2.1f, noise_hash(seed + 3u)));
     if (rho < 1.0f) {
         float rho2 = rho * rho;
         return (depth + rim) * (2.0f * rho2 - rho2 * rho2) - depth + depth * rough;

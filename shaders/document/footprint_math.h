@@ -1,18 +1,18 @@
 // A boot's print, the same in GLSL and C++.
 //
-// Inputs everywhere: `local`: position from the print's middle in units of its length, x to the right of and y along the heading
-// (footprint_local turns an offset in the world); `foot`: 0 left, 1 right. Everything but footprint_sole itself (a distance)
-// is 0 for |local| >= kFootprintReach.
+// Inputs everywhere: `local`: position from the print's middle in units of its length, x to the right of and
+// y along the heading (footprint_local turns an offset in the world); `foot`: 0 left, 1 right. Everything but
+// footprint_sole itself (a distance) is 0 for |local| >= kFootprintReach.
 #ifndef LOAM_FOOTPRINT_MATH_H
 #define LOAM_FOOTPRINT_MATH_H
 #include "shaders/document/noise_math.h"
 LOAM_BEGIN_SHARED
 
-#define kFootprintReach 0.72f // of marks and of the dent, in lengths
-#define kFootprintRim 0.16f   // width of the raised rim outside the sole, in lengths
+#define kFootprintReach 0.72f  // of marks and of the dent, in lengths
+#define kFootprintRim 0.16f    // width of the raised rim outside the sole, in lengths
 
-// `offset`: from the print's middle, east and north, in units of its length; `heading`: (sin, cos) of the heading clockwise
-// from north, which is the direction of the toes.
+// `offset`: from the print's middle, east and north, in units of its length; `heading`: (sin, cos) of the
+// heading clockwise from north, which is the direction of the toes.
 LOAM_INLINE vec2 footprint_local(vec2 offset, vec2 heading) {
     return vec2(offset.x * heading.y - offset.y * heading.x, offset.x * heading.x + offset.y * heading.y);
 }
@@ -30,9 +30,10 @@ LOAM_INLINE float footprint_disc(vec2 p, float x, float y, float radius) {
     return radius - sqrt(dx * dx + dy * dy);
 }
 
-// Signed coverage of the sole: about the distance to its outline in lengths, positive inside (up to about 0.17).
+// Signed coverage of the sole: about the distance to its outline in lengths, positive inside (up to about
+// 0.17).
 LOAM_INLINE float footprint_sole(vec2 local, int foot) {
-    vec2 p = vec2(foot == 0 ? -local.x : local.x, local.y); // a right foot: the inner side is at negative x
+    vec2 p = vec2(foot == 0 ? -local.x : local.x, local.y);  // a right foot: the inner side is at negative x
     float heel = footprint_disc(p, 0.005f, -0.365f, 0.115f);
     float ball = footprint_disc(p, 0.0f, 0.16f, 0.165f);
     float toes = footprint_disc(p, -0.025f, 0.33f, 0.135f);
@@ -56,7 +57,8 @@ LOAM_INLINE float footprint_tread(vec2 local, int foot) {
     return inside * (front * noise_ramp(0.3f, 0.55f, chevron) + heel * noise_ramp(0.3f, 0.55f, bar));
 }
 
-// Height change in units of the print's depth: -1 under the sole, up to +0.2 on the rim, 0 from kFootprintRim outside it on.
+// Height change in units of the print's depth: -1 under the sole, up to +0.2 on the rim, 0 from kFootprintRim
+// outside it on.
 LOAM_INLINE float footprint_height(vec2 local, int foot, uint seed) {
     float r2 = local.x * local.x + local.y * local.y;
     if (r2 >= kFootprintReach * kFootprintReach) return 0.0f;
@@ -74,7 +76,8 @@ LOAM_INLINE float footprint_height(vec2 local, int foot, uint seed) {
 LOAM_INLINE float footprint_shade(vec2 local, int foot) {
     float r2 = local.x * local.x + local.y * local.y;
     if (r2 >= kFootprintReach * kFootprintReach) return 0.0f;
-    return noise_ramp(-0.01f, 0.02f, footprint_sole(local, foot)) * (0.55f + 0.45f * footprint_tread(local, foot));
+    return noise_ramp(-0.01f, 0.02f, footprint_sole(local, foot)) *
+           (0.55f + 0.45f * footprint_tread(local, foot));
 }
 
 LOAM_END_SHARED

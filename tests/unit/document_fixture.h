@@ -19,7 +19,8 @@ class TemporaryFolder {
   public:
     TemporaryFolder() {
         static std::atomic<int> counter{0};
-        path_ = std::filesystem::temp_directory_path() / ("loam_test_" + std::to_string(getpid()) + "_" + std::to_string(counter++));
+        path_ = std::filesystem::temp_directory_path() /
+                ("loam_test_" + std::to_string(getpid()) + "_" + std::to_string(counter++));
         std::filesystem::remove_all(path_);
         std::filesystem::create_directories(path_);
     }
@@ -43,7 +44,9 @@ inline ProjectSettings small_settings() {
     settings.height_spacing_m = 1.0;
     settings.index_spacing_m = 0.5;
     settings.default_height_mm = 12000;
-    settings.layers = {{"grass", "layers/grass.layer", 2.0}, {"dirt", "layers/dirt.layer", 1.5}, {"scree", "layers/scree.layer", 3.0}};
+    settings.layers = {{"grass", "layers/grass.layer", 2.0},
+                       {"dirt", "layers/dirt.layer", 1.5},
+                       {"scree", "layers/scree.layer", 3.0}};
     return settings;
 }
 
@@ -59,8 +62,12 @@ inline std::unique_ptr<Document> create_small(const std::filesystem::path& folde
 
 // Any command but undo and redo; `id`s are of operators that may or may not exist.
 inline Command random_command(std::mt19937& random, uint64_t most_id) {
-    const auto uniform = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(random); };
-    const auto whole = [&](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
+    const auto uniform = [&](double low, double high) {
+        return std::uniform_real_distribution<double>(low, high)(random);
+    };
+    const auto whole = [&](int low, int high) {
+        return std::uniform_int_distribution<int>(low, high)(random);
+    };
     const auto place = [&] { return glm::dvec2(uniform(-20, 320), uniform(-20, 230)); };
     const auto dabs = [&] {
         std::vector<glm::dvec2> list(size_t(whole(1, 4)));
@@ -88,7 +95,8 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
             paint.radius_m = uniform(0.1, 20);
             const char* names[] = {"grass", "dirt", "scree"};
             if (whole(0, 2) != 0) paint.layer = names[whole(0, 2)];
-            if (!paint.layer || whole(0, 1) != 0) paint.tint = glm::dvec3(uniform(0, 1), uniform(0, 1), uniform(0, 1));
+            if (!paint.layer || whole(0, 1) != 0)
+                paint.tint = glm::dvec3(uniform(0, 1), uniform(0, 1), uniform(0, 1));
             paint.strength = uniform(0, 1);
             paint.hardness = uniform(0, 1);
             if (whole(0, 1) != 0) paint.max_slope_rad = uniform(0, 1);
@@ -98,22 +106,28 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
         }
         case 6: {
             const glm::dvec2 center = place();
-            command.body = CraterCommand{{center.x, center.y, uniform(0.5, 30), uniform(0, 5), uint32_t(random())}};
+            command.body =
+                CraterCommand{{center.x, center.y, uniform(0.5, 30), uniform(0, 5), uint32_t(random())}};
             break;
         }
         case 7: {
             FootprintsCommand prints;
             for (int i = whole(1, 5); i > 0; --i) {
                 const glm::dvec2 at = place();
-                prints.prints.push_back({at.x, at.y, uniform(-3, 3), uniform(0.1, 0.5), uniform(0, 0.1), i % 2, uint32_t(random())});
+                prints.prints.push_back({at.x, at.y, uniform(-3, 3), uniform(0.1, 0.5), uniform(0, 0.1),
+                                         i % 2, uint32_t(random())});
             }
             command.body = prints;
             break;
         }
-        case 8: command.body = SetOperatorCommand{random() % (most_id + 1), whole(0, 1) == 1}; break;
-        default: command.body = RemoveOperatorCommand{random() % (most_id + 1)}; break;
+        case 8:
+            command.body = SetOperatorCommand{random() % (most_id + 1), whole(0, 1) == 1};
+            break;
+        default:
+            command.body = RemoveOperatorCommand{random() % (most_id + 1)};
+            break;
     }
     return command;
 }
 
-} // namespace loam::test
+}  // namespace loam::test

@@ -1,9 +1,9 @@
 // The document: commands, undo, mips, persistence, locks, failure of a transaction.
+#include <sys/resource.h>
 #include <csignal>
 #include <cstring>
 #include <fstream>
 #include <set>
-#include <sys/resource.h>
 #include <thread>
 
 #include "document_fixture.h"
@@ -60,12 +60,14 @@ void expect_mips_are_samples(const Document& document) {
     const glm::ivec2 size = document.index_size_texels();
     const auto lock = document.read_lock();
     for (int mip = 1; mip < document.height_mip_count(); ++mip) {
-        const int width = ((s.height_samples_x - 1) >> mip) + 1, height = ((s.height_samples_y - 1) >> mip) + 1;
+        const int width = ((s.height_samples_x - 1) >> mip) + 1,
+                  height = ((s.height_samples_y - 1) >> mip) + 1;
         std::vector<int32_t> coarse(size_t(width) * size_t(height));
         document.read_heights_mm(mip, 0, 0, width, height, coarse.data());
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
-                ASSERT_EQ(coarse[size_t(y * width + x)], finest[size_t((y << mip) * s.height_samples_x + (x << mip))])
+                ASSERT_EQ(coarse[size_t(y * width + x)],
+                          finest[size_t((y << mip) * s.height_samples_x + (x << mip))])
                     << "mip " << mip << " at " << x << ", " << y;
     }
     for (int mip = 1; mip < document.index_mip_count(); ++mip) {
@@ -74,19 +76,23 @@ void expect_mips_are_samples(const Document& document) {
         document.read_index(mip, 0, 0, width, height, coarse.data());
         for (int y = 0; y < height; ++y)
             for (int x = 0; x < width; ++x)
-                ASSERT_TRUE(coarse[size_t(y * width + x)] == texels[size_t((y << mip) * size.x + (x << mip))]);
+                ASSERT_TRUE(coarse[size_t(y * width + x)] ==
+                            texels[size_t((y << mip) * size.x + (x << mip))]);
     }
 }
 
-} // namespace
+}  // namespace
 
 TEST(document, starts_flat_and_reads_clamped) {
     TemporaryFolder folder;
     const auto document = create_small(folder.path() / "p");
-    EXPECT_EQ(document->height_mip_count(), 4); // 301 -> 151 -> 76 -> 38
+    EXPECT_EQ(document->height_mip_count(), 4);  // 301 -> 151 -> 76 -> 38
     EXPECT_EQ(document->index_size_texels(), glm::ivec2(601, 413));
     for (const int32_t height : all_heights(*document)) ASSERT_EQ(height, 12000);
-    ASSERT_TRUE(document->apply(command_of(R"({"cmd":"sculpt","mode":"raise","dabs":[[0,0]],"radius_m":5,"strength_m":3})")).ok());
+    ASSERT_TRUE(document
+                    ->apply(command_of(
+                        R"({"cmd":"sculpt","mode":"raise","dabs":[[0,0]],"radius_m":5,"strength_m":3})"))
+                    .ok());
     EXPECT_EQ(height_at(*document, 0, 0), 15000);
     EXPECT_EQ(height_at(*document, -50, -7), 15000) << "outside: the nearest sample";
     std::vector<int32_t> window(200 * 100);
@@ -106,16 +112,20 @@ TEST(document, sculpts_and_survives_reopening) {
     std::vector<int32_t> heights;
     {
         const auto document = create_small(folder.path() / "p");
-        const auto dirt = take(document->apply(
-            command_of(R"({"cmd":"sculpt","mode":"raise","dabs":[[100,100]],"radius_m":10,"strength_m":0.5,"hardness":0.5})")));
+        const auto dirt = take(document->apply(command_of(
+            R"({"cmd":"sculpt","mode":"raise","dabs":[[100,100]],"radius_m":10,"strength_m":0.5,"hardness":0.5})")));
         ASSERT_EQ(dirt.height.size(), 1u);
         EXPECT_TRUE(dirt.index.empty());
         EXPECT_NEAR(dirt.height[0].min_x, 100 - 12, 1.01);
         EXPECT_NEAR(dirt.height[0].max_y, 100 + 12, 1.01);
         EXPECT_EQ(height_at(*document, 100, 100), 12500);
         EXPECT_EQ(height_at(*document, 111, 100), 12000);
-        ASSERT_TRUE(document->apply(command_of(R"({"cmd":"paint","dabs":[[50,50]],"radius_m":5,"layer":"scree","hardness":1})")).ok());
-        ASSERT_TRUE(document->apply(command_of(R"({"cmd":"crater","x":200,"y":100,"radius_m":10,"seed":7})")).ok());
+        ASSERT_TRUE(document
+                        ->apply(command_of(
+                            R"({"cmd":"paint","dabs":[[50,50]],"radius_m":5,"layer":"scree","hardness":1})"))
+                        .ok());
+        ASSERT_TRUE(
+            document->apply(command_of(R"({"cmd":"crater","x":200,"y":100,"radius_m":10,"seed":7})")).ok());
         digest = take(document->content_digest());
         heights = all_heights(*document);
     }
@@ -146,7 +156,8 @@ TEST(document, dirt_covers_every_change_and_is_tight) {
             if (heights[k] != heights_after[k]) {
                 const double x = double(int(k) % width), y = double(int(k) / width);
                 for (const double dx : {-2.0, 0.0, 2.0})
-                    for (const double dy : {-2.0, 0.0, 2.0}) ASSERT_TRUE(covered(dirt->height, x + dx, y + dy)) << to_json(command);
+                    for (const double dy : {-2.0, 0.0, 2.0})
+                        ASSERT_TRUE(covered(dirt->height, x + dx, y + dy)) << to_json(command);
             }
         const int texel_width = document->index_size_texels().x;
         for (size_t k = 0; k < texels.size(); ++k)
@@ -169,7 +180,8 @@ TEST(document, a_command_touching_nothing_is_fine) {
     TemporaryFolder folder;
     const auto document = create_small(folder.path() / "p");
     const uint64_t digest = take(document->content_digest());
-    const auto dirt = take(document->apply(command_of(R"({"cmd":"sculpt","mode":"raise","dabs":[[9000,9000]],"radius_m":5})")));
+    const auto dirt = take(
+        document->apply(command_of(R"({"cmd":"sculpt","mode":"raise","dabs":[[9000,9000]],"radius_m":5})")));
     EXPECT_TRUE(dirt.empty());
     EXPECT_TRUE(take(document->apply(command_of(R"({"cmd":"sculpt","mode":"smooth","dabs":[]})"))).empty());
     EXPECT_EQ(take(document->content_digest()), digest);
@@ -198,20 +210,34 @@ TEST(document, a_brush_finer_than_the_map_still_moves_the_nearest_sample) {
 TEST(document, smoothing_and_flattening_do_what_they_say) {
     TemporaryFolder folder;
     const auto document = create_small(folder.path() / "p");
-    ASSERT_TRUE(document->apply(command_of(R"({"cmd":"sculpt","mode":"raise","dabs":[[100,100]],"radius_m":1,"strength_m":10})")).ok());
+    ASSERT_TRUE(document
+                    ->apply(command_of(
+                        R"({"cmd":"sculpt","mode":"raise","dabs":[[100,100]],"radius_m":1,"strength_m":10})"))
+                    .ok());
     const int32_t spike = height_at(*document, 100, 100);
     ASSERT_GT(spike, 20000);
-    ASSERT_TRUE(document->apply(command_of(R"({"cmd":"sculpt","mode":"smooth","dabs":[[100,100]],"radius_m":8,"strength":1})")).ok());
+    ASSERT_TRUE(document
+                    ->apply(command_of(
+                        R"({"cmd":"sculpt","mode":"smooth","dabs":[[100,100]],"radius_m":8,"strength":1})"))
+                    .ok());
     EXPECT_LT(height_at(*document, 100, 100), spike - 3000);
     EXPECT_GT(height_at(*document, 102, 100), 12000);
     int32_t low = INT32_MAX, high = 0;
     for (int i = 0; i < 20; ++i)
-        ASSERT_TRUE(document->apply(command_of(R"({"cmd":"sculpt","mode":"smooth","dabs":[[100,100]],"radius_m":8,"strength":1})")).ok());
-    for (const int32_t height : all_heights(*document)) low = std::min(low, height), high = std::max(high, height);
+        ASSERT_TRUE(
+            document
+                ->apply(command_of(
+                    R"({"cmd":"sculpt","mode":"smooth","dabs":[[100,100]],"radius_m":8,"strength":1})"))
+                .ok());
+    for (const int32_t height : all_heights(*document))
+        low = std::min(low, height), high = std::max(high, height);
     EXPECT_GE(low, 12000) << "averaging never overshoots";
     EXPECT_LT(high, 12500);
-    ASSERT_TRUE(document->apply(command_of(
-        R"({"cmd":"sculpt","mode":"flatten","dabs":[[100,100]],"radius_m":10,"strength":1,"hardness":1,"target_m":50})")).ok());
+    ASSERT_TRUE(
+        document
+            ->apply(command_of(
+                R"({"cmd":"sculpt","mode":"flatten","dabs":[[100,100]],"radius_m":10,"strength":1,"hardness":1,"target_m":50})"))
+            .ok());
     EXPECT_EQ(height_at(*document, 100, 100), 50000);
     EXPECT_EQ(height_at(*document, 106, 104), 50000);
     EXPECT_EQ(height_at(*document, 111, 100), 12000);
@@ -220,8 +246,11 @@ TEST(document, smoothing_and_flattening_do_what_they_say) {
 TEST(document, painting_fills_a_solid_disc_and_keeps_to_slopes) {
     TemporaryFolder folder;
     const auto document = create_small(folder.path() / "p");
-    ASSERT_TRUE(document->apply(command_of(
-        R"({"cmd":"paint","dabs":[[100,100]],"radius_m":5,"layer":"scree","strength":1,"hardness":1,"tint":[0.5,1,0]})")).ok());
+    ASSERT_TRUE(
+        document
+            ->apply(command_of(
+                R"({"cmd":"paint","dabs":[[100,100]],"radius_m":5,"layer":"scree","strength":1,"hardness":1,"tint":[0.5,1,0]})"))
+            .ok());
     const auto texels = all_texels(*document);
     const int width = document->index_size_texels().x;
     for (int y = 0; y < document->index_size_texels().y; ++y)
@@ -233,7 +262,8 @@ TEST(document, painting_fills_a_solid_disc_and_keeps_to_slopes) {
             ASSERT_EQ(texel.tint[2], inside ? 0 : 255);
         }
     // Half strength: about half of the texels, and a second dab of the same seed adds none.
-    const char* half = R"({"cmd":"paint","dabs":[[200,100]],"radius_m":15,"layer":"dirt","strength":0.5,"hardness":1,"seed":4})";
+    const char* half =
+        R"({"cmd":"paint","dabs":[[200,100]],"radius_m":15,"layer":"dirt","strength":0.5,"hardness":1,"seed":4})";
     ASSERT_TRUE(document->apply(command_of(half)).ok());
     const auto count = [&] {
         size_t n = 0;
@@ -246,13 +276,19 @@ TEST(document, painting_fills_a_solid_disc_and_keeps_to_slopes) {
     ASSERT_TRUE(document->apply(command_of(half)).ok());
     EXPECT_EQ(count(), before);
     // Slope: a steep cone is painted, the flat around it is not.
-    ASSERT_TRUE(document->apply(command_of(
-        R"({"cmd":"sculpt","mode":"raise","dabs":[[60,160]],"radius_m":10,"strength_m":20,"hardness":0})")).ok());
-    ASSERT_TRUE(document->apply(command_of(
-        R"({"cmd":"paint","dabs":[[60,160]],"radius_m":20,"layer":"dirt","hardness":1,"min_slope_rad":0.5})")).ok());
+    ASSERT_TRUE(
+        document
+            ->apply(command_of(
+                R"({"cmd":"sculpt","mode":"raise","dabs":[[60,160]],"radius_m":10,"strength_m":20,"hardness":0})"))
+            .ok());
+    ASSERT_TRUE(
+        document
+            ->apply(command_of(
+                R"({"cmd":"paint","dabs":[[60,160]],"radius_m":20,"layer":"dirt","hardness":1,"min_slope_rad":0.5})"))
+            .ok());
     const auto sloped = all_texels(*document);
-    EXPECT_EQ(sloped[size_t(320 * width + 120 + 10)].layer, 1); // 5 m east of the top
-    EXPECT_EQ(sloped[size_t(320 * width + 120 + 30)].layer, 0); // 15 m: flat
+    EXPECT_EQ(sloped[size_t(320 * width + 120 + 10)].layer, 1);  // 5 m east of the top
+    EXPECT_EQ(sloped[size_t(320 * width + 120 + 30)].layer, 0);  // 15 m: flat
     expect_mips_are_samples(*document);
 }
 
@@ -277,10 +313,10 @@ TEST(document, undo_and_redo_are_exact_over_random_commands) {
     const auto path = folder.path() / "p";
     auto document = create_small(path);
     std::mt19937 random(11);
-    std::vector<uint64_t> digests{take(document->content_digest())}; // after each undo step
+    std::vector<uint64_t> digests{take(document->content_digest())};  // after each undo step
     std::vector<std::vector<int32_t>> some_heights;
     uint64_t group = 0;
-    std::vector<bool> continues; // the command belongs to the group of the one before
+    std::vector<bool> continues;  // the command belongs to the group of the one before
     int applied = 0;
     while (applied < 500) {
         const bool same_group = group != 0 && random() % 3 != 0;
@@ -418,7 +454,8 @@ TEST(document, settings_can_change_where_pages_do_not_depend_on_them) {
     settings.layers.push_back({"lava", "layers/lava.layer", 1.0});
     ASSERT_TRUE(document->change_settings(settings).ok());
     settings.height_spacing_m = 2;
-    EXPECT_EQ(document->change_settings(settings).message(), "height_spacing_m cannot change once a project exists");
+    EXPECT_EQ(document->change_settings(settings).message(),
+              "height_spacing_m cannot change once a project exists");
     document.reset();
     document = take(Document::open(path));
     EXPECT_EQ(document->settings().sun_azimuth_rad, 1.25);
@@ -431,10 +468,13 @@ TEST(document, a_failed_transaction_leaves_the_old_state) {
     TemporaryFolder folder;
     const auto path = folder.path() / "p";
     auto document = create_small(path);
-    ASSERT_TRUE(document->apply(command_of(R"({"cmd":"sculpt","mode":"raise","dabs":[[100,100]],"radius_m":30,"strength_m":5})")).ok());
+    ASSERT_TRUE(document
+                    ->apply(command_of(
+                        R"({"cmd":"sculpt","mode":"raise","dabs":[[100,100]],"radius_m":30,"strength_m":5})"))
+                    .ok());
     const uint64_t digest = take(document->content_digest()), revision = document->revision();
     const auto heights = all_heights(*document);
-    PaintCommand paint; // dithered noise over the whole map: some 60 KB
+    PaintCommand paint;  // dithered noise over the whole map: some 60 KB
     paint.dabs = {{150, 100}};
     paint.radius_m = 200;
     paint.layer = "scree";

@@ -1,0 +1,193 @@
+// Operators: the shape of craters and prints, independence of the grid, the spatial index.
+#include "document_fixture.h"
+#include "runtime/document/operator_index.h"
+#include "shaders/document/crater_math.h"
+#include "shaders/document/footprint_math.h"
+
+using namespace loam;
+using namespace loam::test;
+using glm::vec2;
+
+namespace {
+
+constexpr float kPi = 3.14159265f;
+
+vec2 on_ray(float r, float angle) {
+    return vec2(r * std::cos(angle), r * std::sin(angle));
+}
+
+}  // namespace
+
+TEST(crater, has_a_bowl_a_rim_and_ends_in_nothing) {
+    for (uint32_t seed = 0; seed < 20; ++seed) {
+        EXPECT_NEAR(shared::crater_height(vec2(0, 0), 0.4f, seed), -0.4f, 0.05f);
+        float rim = 0;
+        for (float angle = 0; angle < 2 * kPi; angle += 0.1f) {
+            float highest = -1, at = 0;
+            for (float r = 0; r < 3; r += 0.01f) {
+                const float h = shared::crater_height(on_ray(r, angle), 0.4f, seed);
+                ASSERT_TRUE(std::isfinite(h));
+                if (h > highest) highest = h, at = r;
+                if (r >= kCraterHeightReach) {
+                    ASSERT_EQ(h, 0.0f);
+                }
+            }
+            EXPECT_GT(at, 0.8f) << "the crest wanders by 10 %, and the roughness moves its highest point";
+            EXPECT_LT(at, 1.25f);
+            rim += highest / 63;
+        }
+        EXPECT_NEAR(rim, 0.14f, 0.03f) << "Pike: 0.07 of the diameter";
+    }
+}
+
+TEST(crater, height_has_no_steps_and_no_kinks) {
+    // C1: the slope may change between steps by no more than a bound on the curvature times the step.
+    const float step = 2e-3f;
+    for (uint32_t seed : {1u, 7u, 99u})
+        for (float angle = 0.05f; angle < 6; angle += 0.37f) {
+            double before = 0, slope_before = 0;
+            for (int i = 0; float(i) * step < 2.8f; ++i) {
+                const double h = double(shared::crater_height(on_ray(float(i) * step, angle), 0.4f, seed));
+                const double slope = (h - before) / step;
+                if (i > 0) {
+                    ASSERT_LT(std::abs(slope), 2.0) << "at " << float(i) * step;
+                }
+                if (i > 1) {
+                    ASSERT_LT(std::abs(slope - slope_before), 12.0 * step + 1e-3) << "at " << float(i) * step;
+                }
+                before = h;
+                slope_before = slope;
+            }
+        }
+}
+
+TEST(crater, marks_lie_in_range_and_end) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<float> place(-4, 4);
+    int zones[3] = {0, 0, 0};
+    float most_rays = 0;
+    for (int i = 0; i < 100000; ++i) {
+        const vec2 p(place(random), place(random));
+        const float rays = shared::crater_rays(p, 5), scorch = shared::crater_scorch(p, 5);
+        const int zone = shared::crater_zone(p, 5);
+        ASSERT_TRUE(rays >= 0 && rays <= 1 && scorch >= 0 && scorch <= 1 && zone >= 0 && zone <= 2);
+        if (std::hypot(p.x, p.y) >= kCraterMarkReach) {
+            ASSERT_TRUE(rays == 0 && scorch == 0 && zone == 0);
+        }
+        ++zones[zone];
+        most_rays = std::max(most_rays, rays);
+    }
+    EXPECT_GT(zones[1], 1000);
+    EXPECT_GT(zones[2], 4000);
+    EXPECT_GT(most_rays, 0.5f);
+    EXPECT_EQ(shared::crater_scorch(vec2(0, 0), 5), 1.0f);
+    EXPECT_EQ(shared::crater_zone(vec2(0, 0), 5), 1);
+}
+
+TEST(footprint, is_a_dent_with_a_rim_and_mirrors) {
+    float low = 0, high = 0;
+    for (float y = -0.8f; y <= 0.8f; y += 0.01f)
+        for (float x = -0.8f; x <= 0.8f; x += 0.01f) {
+            const float h = shared::footprint_height(vec2(x, y), 0, 3);
+            low = std::min(low, h);
+            high = std::max(high, h);
+            if (std::hypot(x, y) >= kFootprintReach) {
+                ASSERT_EQ(h, 0.0f);
+            }
+            if (std::hypot(x, y) > kFootprintReach - 0.02f) {
+                ASSERT_EQ(h, 0.0f) << "fades out before the reach";
+            }
+            ASSERT_EQ(shared::footprint_sole(vec2(x, y), 0), shared::footprint_sole(vec2(-x, y), 1));
+        }
+    EXPECT_EQ(low, -1.0f);
+    EXPECT_GT(high, 0.08f);
+    EXPECT_LT(high, 0.21f);
+    const vec2 east =
+        shared::footprint_local(vec2(1, 0), vec2(1, 0));  // heading east: toes at +x of the world
+    EXPECT_NEAR(east.y, 1, 1e-6);
+    EXPECT_NEAR(shared::footprint_local(vec2(0, 1), vec2(0, 1)).y, 1, 1e-6);
+    EXPECT_NEAR(shared::footprint_local(vec2(1, 0), vec2(0, 1)).x, 1, 1e-6);
+}
+
+TEST(operators, change_samples_by_position_only_and_within_bounds) {
+    const Operator ops[] = {{1, 1, true, Crater{103.7, 98.1, 12.5, 0, 7}},
+                            {2, 2, true, Footprint{100.2, 99.4, 0.7, 2.0, 0.2, 1, 4}}};
+    const ResolvedRoles roles{1, 2};
+    for (const Operator& op : ops) {
+        const double spacing = 0.3;
+        const auto compose = [&](int i0, int j0, int size) {
+            std::vector<double> heights(size_t(size * size), 50.0);
+            apply_height(op, {heights.data(), size, size, size, i0 * spacing, j0 * spacing, spacing});
+            return heights;
+        };
+        const auto texels_of = [&](int i0, int j0, int size) {
+            std::vector<IndexTexel> texels(size_t(size * size));
+            apply_index(op, roles, {texels.data(), size, size, size, i0 * spacing, j0 * spacing, spacing});
+            return texels;
+        };
+        const auto whole = compose(150, 150, 400);
+        const auto whole_texels = texels_of(150, 150, 400);
+        const WorldRect bounds = op.height_bounds(), index_bounds = op.index_bounds();
+        int changed = 0;
+        for (int j = 0; j < 400; ++j)
+            for (int i = 0; i < 400; ++i) {
+                const double x = (150 + i) * spacing, y = (150 + j) * spacing;
+                const bool differs = whole[size_t(j * 400 + i)] != 50.0;
+                changed += differs;
+                if (!bounds.grown(1e-4).contains(x, y)) {
+                    ASSERT_FALSE(differs);
+                }
+                if (!index_bounds.grown(1e-4).contains(x, y)) {
+                    ASSERT_TRUE(whole_texels[size_t(j * 400 + i)] == IndexTexel{});
+                }
+            }
+        EXPECT_GT(changed, 10);
+        for (const auto& [i0, j0] : {std::pair{317, 303}, {290, 341}, {333, 333}}) {
+            const auto part = compose(i0, j0, 31);
+            const auto part_texels = texels_of(i0, j0, 31);
+            for (int j = 0; j < 31; ++j)
+                for (int i = 0; i < 31; ++i) {
+                    const size_t at = size_t((j + j0 - 150) * 400 + i + i0 - 150);
+                    ASSERT_EQ(part[size_t(j * 31 + i)], whole[at]);
+                    ASSERT_TRUE(part_texels[size_t(j * 31 + i)] == whole_texels[at]);
+                }
+        }
+    }
+}
+
+TEST(operator_index, agrees_with_looking_at_all) {
+    std::mt19937 random(8);
+    std::uniform_real_distribution<double> place(-500, 5000), size(-2.5, 3.2);
+    std::vector<std::unique_ptr<Operator>> all;
+    std::vector<WorldRect> bounds;
+    OperatorIndex index;
+    for (uint64_t i = 0; i < 3000; ++i) {
+        all.push_back(std::make_unique<Operator>());
+        *all.back() = {i + 1, random() % 100, random() % 5 != 0, Crater{}};
+        const double x = place(random), y = place(random), s = std::pow(10, size(random));
+        bounds.push_back({x, y, x + s, y + s * 0.7});
+        index.add(all.back().get(), bounds.back());
+    }
+    std::vector<bool> removed(all.size());
+    std::vector<const Operator*> found;
+    for (int round = 0; round < 2000; ++round) {
+        if (round % 4 == 0) {
+            const size_t which = random() % all.size();
+            if (removed[which])
+                index.add(all[which].get(), bounds[which]);
+            else
+                index.remove(all[which].get(), bounds[which]);
+            removed[which] = !removed[which];
+        }
+        const double x = place(random), y = place(random), s = std::pow(10, size(random));
+        const WorldRect rect{x, y, x + s, y + s};
+        index.query(rect, found);
+        std::vector<const Operator*> expected;
+        for (size_t i = 0; i < all.size(); ++i)
+            if (!removed[i] && all[i]->enabled && bounds[i].overlaps(rect)) expected.push_back(all[i].get());
+        std::sort(expected.begin(), expected.end(), [](const Operator* a, const Operator* b) {
+            return std::pair(a->order, a->id) < std::pair(b->order, b->id);
+        });
+        ASSERT_EQ(found, expected);
+    }
+}
