@@ -213,6 +213,7 @@ std::vector<VirtualMap::Work> VirtualMap::plan(uint64_t frame, int new_pages) {
                 double(priority))
                 break;
             eject(victim);
+            std::erase_if(work, [&](const Work& w) { return w.slot == victim; });  // its dirt went with it
             ++ejected;
             waiting = true;
         }

@@ -246,6 +246,29 @@ TEST(VirtualMap, TakesNonsense) {
     EXPECT_EQ(map.plan(2, -5).size(), 1u);  // the root
 }
 
+TEST(VirtualMap, AnEjectedPageIsNotComposedAgain) {
+    VirtualMapDesc desc = kDesc;
+    desc.slot_count = 3;
+    VirtualMap map(desc);
+    uint64_t frame = 0;
+    for (int i = 0; i < 8; ++i) {
+        map.request({0, 0, 0}, 1);
+        map.request({0, 1, 0}, 1);
+        for (const auto& work : map.plan(++frame, 3)) map.finish(work);
+    }
+    map.invalidate({-1, -1, 40, 40});
+    // The cache is full, both pages are dirty and asked for, and another one is wanted far more.
+    map.request({0, 0, 0}, 1);
+    map.request({0, 1, 0}, 1);
+    map.request({0, 2, 2}, 100);
+    const auto planned = map.plan(++frame, 1);
+    EXPECT_EQ(map.counters().ejected, 1u);
+    for (const auto& work : planned) {
+        EXPECT_EQ(map.slot_of(work.page), work.slot);
+        map.finish(work);
+    }
+}
+
 TEST(VirtualMap, TenThousandPagesAreQuick) {
     VirtualMapDesc desc{
         .slot_count = 10'000, .level_count = 9, .spacing_m = 1, .bounds = {0, 0, 16384, 16384}};
