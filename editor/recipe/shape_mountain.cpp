@@ -64,7 +64,7 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
         const int steps = coarsest == 0 ? 60 : kSteps[level];
         Incision incision{.uplift_m = 0,
                           .rate = 0.6f,
-                          .steepest = level >= 2 ? 0.5f : 0.8f,
+                          .steepest = level >= 2 ? 0.44f : 0.72f,
                           .uplift_share = &uplift,
                           .strength = &strength};
         if (level == 2 && coarsest > 2) incision.rate = 0.15f;
@@ -79,7 +79,7 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
             const Drainage drainage = route(shape.height_m, spacing, plan.outlets, wander);
             incise(shape.height_m, drainage, spacing, incision);
             if (level > 0)
-                creep(shape.height_m, spacing, (level == 3 ? 1.5f : level == 2 ? 0.6f : 0.05f) * dx * dx);
+                creep(shape.height_m, spacing, (level == 3 ? 2.0f : level == 2 ? 0.6f : 0.05f) * dx * dx);
         }
         if (level == std::min(1, coarsest)) {
             LOAM_TRY(step_progress(progress, 0.4, "filling valley floors"));
@@ -102,7 +102,7 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
                                {.capacity = 0.05f * dx * dx, .pick_up = 0.3f, .deepest_m = 0.15f * dx});
             }
             weather(shape.height_m, shape.deposit_m, spacing,
-                    {.repose = 0.62f, .rock_limit = 0.72f, .crumble = 0.05f, .strength = &strength},
+                    {.repose = 0.62f, .rock_limit = 0.68f, .crumble = 0.05f, .strength = &strength},
                     level == 1 ? 60 : 40);
             creep(shape.height_m, spacing, (level == 1 ? 0.1f : 0.04f) * dx * dx);
         }
