@@ -9,7 +9,8 @@ namespace loam {
 namespace {
 
 template <typename T, size_t N>
-Result<T> parse_choice(std::string_view what, std::string_view name, const std::array<std::pair<const char*, T>, N>& choices) {
+Result<T> parse_choice(std::string_view what, std::string_view name,
+                       const std::array<std::pair<const char*, T>, N>& choices) {
     std::string names;
     for (const auto& [text, value] : choices) {
         if (name == text) return value;
@@ -18,7 +19,7 @@ Result<T> parse_choice(std::string_view what, std::string_view name, const std::
     return error("unknown {} \"{}\", expected one of {}", what, name, names);
 }
 
-} // namespace
+}  // namespace
 
 Result<Quality> parse_quality(std::string_view name) {
     return parse_choice<Quality, 5>("quality", name,
@@ -30,7 +31,8 @@ Result<Quality> parse_quality(std::string_view name) {
 }
 
 Result<PageFormat> parse_page_format(std::string_view name) {
-    return parse_choice<PageFormat, 2>("format", name, {{{"bc1", PageFormat::bc1x3}, {"rgba8", PageFormat::rgba8}}});
+    return parse_choice<PageFormat, 2>("format", name,
+                                       {{{"bc1", PageFormat::bc1x3}, {"rgba8", PageFormat::rgba8}}});
 }
 
 Result<DebugView> parse_debug_view(std::string_view name) {
@@ -45,4 +47,4 @@ Result<DebugView> parse_debug_view(std::string_view name) {
                                         {"albedo", DebugView::albedo}}});
 }
 
-} // namespace loam
+}  // namespace loam

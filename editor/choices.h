@@ -11,4 +11,4 @@ namespace loam {
 [[nodiscard]] Result<PageFormat> parse_page_format(std::string_view name);  // bc1, rgba8
 [[nodiscard]] Result<DebugView> parse_debug_view(std::string_view name);    // none, mips, sectors, …
 
-} // namespace loam
+}  // namespace loam

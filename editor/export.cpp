@@ -42,20 +42,23 @@ HeightScale whole_range(double min_m, double max_m) {
 
 Status write_raw(const std::filesystem::path& file, const std::vector<float>& heights) {
     std::ofstream stream(file, std::ios::binary);
-    stream.write(reinterpret_cast<const char*>(heights.data()), static_cast<std::streamsize>(heights.size() * sizeof(float)));
+    stream.write(reinterpret_cast<const char*>(heights.data()),
+                 static_cast<std::streamsize>(heights.size() * sizeof(float)));
     stream.close();
     if (!stream) return error("cannot write {}: {}", file.string(), std::strerror(errno));
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Result<ExportReport> export_heights(const Document& document, const ExportRequest& request) {
     std::string extension = request.file.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(), [](char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](char c) { return static_cast<char>(std::tolower(c)); });
     const bool is_png = extension == ".png";
     if (!is_png && extension != ".tif" && extension != ".tiff" && extension != ".exr" && extension != ".raw")
-        return error("cannot export to {}: the name must end in .png, .tif, .exr or .raw", request.file.string());
+        return error("cannot export to {}: the name must end in .png, .tif, .exr or .raw",
+                     request.file.string());
 
     const std::vector<double> heights = read_heights(document, request.what);
     ExportReport report;
@@ -66,8 +69,9 @@ Result<ExportReport> export_heights(const Document& document, const ExportReques
     report.max_m = *high;
     if (!is_png) {
         const std::vector<float> floats(heights.begin(), heights.end());
-        LOAM_TRY(extension == ".raw" ? write_raw(request.file, floats)
-                                     : write_samples_float(request.file, report.width, report.height, floats));
+        LOAM_TRY(extension == ".raw"
+                     ? write_raw(request.file, floats)
+                     : write_samples_float(request.file, report.width, report.height, floats));
         return report;
     }
     const HeightScale scale = request.scale.value_or(whole_range(report.min_m, report.max_m));
@@ -82,4 +86,4 @@ Result<ExportReport> export_heights(const Document& document, const ExportReques
     return report;
 }
 
-} // namespace loam
+}  // namespace loam

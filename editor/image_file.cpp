@@ -29,7 +29,8 @@ bool looks_like_text(std::span<const unsigned char> head) {
 Status check_readable(const std::filesystem::path& file) {
     std::error_code code;
     if (!std::filesystem::exists(file, code)) return error("{} does not exist", file.string());
-    if (std::filesystem::is_directory(file, code)) return error("{} is a folder, expected a picture", file.string());
+    if (std::filesystem::is_directory(file, code))
+        return error("{} is a folder, expected a picture", file.string());
     std::ifstream stream(file, std::ios::binary);
     if (!stream) return error("{} cannot be read: no permission", file.string());
     std::array<unsigned char, 512> head{};
@@ -41,8 +42,8 @@ Status check_readable(const std::filesystem::path& file) {
     return {};
 }
 
-// A PNG is a signature and chunks: length, name, data, checksum, up to IEND. Walking them finds a file that is cut short before
-// libpng does, which would print a line of its own.
+// A PNG is a signature and chunks: length, name, data, checksum, up to IEND. Walking them finds a file that
+// is cut short before libpng does, which would print a line of its own.
 Status check_png_chunks(const std::filesystem::path& file) {
     constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     std::ifstream stream(file, std::ios::binary);
@@ -54,7 +55,8 @@ Status check_png_chunks(const std::filesystem::path& file) {
     for (uint64_t at = head.size(); at + 12 <= size;) {
         stream.seekg(static_cast<std::streamoff>(at));
         stream.read(reinterpret_cast<char*>(head.data()), head.size());
-        const uint64_t length = uint64_t{head[0]} << 24 | uint64_t{head[1]} << 16 | uint64_t{head[2]} << 8 | head[3];
+        const uint64_t length =
+            uint64_t{head[0]} << 24 | uint64_t{head[1]} << 16 | uint64_t{head[2]} << 8 | head[3];
         if (!stream || at + 12 + length > size) break;
         if (std::equal(head.begin() + 4, head.end(), "IEND")) return {};
         at += 12 + length;
@@ -64,22 +66,25 @@ Status check_png_chunks(const std::filesystem::path& file) {
 
 // Reads all channels in the file's own type and keeps the first as floats.
 template <typename T>
-bool read_channels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, SampleImage& out) {
+bool read_channels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
+                   SampleImage& out) {
     const auto channels = static_cast<size_t>(spec.nchannels);
     const auto width = static_cast<size_t>(spec.width);
     constexpr int kRows = 64;
-    const size_t color_channels = channels < 3 ? 1 : 3; // 2: grey and alpha, 4: RGBA
+    const size_t color_channels = channels < 3 ? 1 : 3;  // 2: grey and alpha, 4: RGBA
     std::vector<T> rows(width * channels * kRows);
     for (int y = 0; y < spec.height; y += kRows) {
         const int end = std::min(spec.height, y + kRows);
-        if (!input.read_scanlines(0, 0, spec.y + y, spec.y + end, spec.z, 0, spec.nchannels, type, rows.data()))
+        if (!input.read_scanlines(0, 0, spec.y + y, spec.y + end, spec.z, 0, spec.nchannels, type,
+                                  rows.data()))
             return false;
         const size_t count = width * static_cast<size_t>(end - y);
         float* target = out.samples.data() + static_cast<size_t>(y) * width;
         for (size_t i = 0; i < count; ++i) {
             const T* pixel = rows.data() + i * channels;
             target[i] = static_cast<float>(pixel[0]);
-            for (size_t c = 1; c < color_channels; ++c) out.channels_differ = out.channels_differ || pixel[c] != pixel[0];
+            for (size_t c = 1; c < color_channels; ++c)
+                out.channels_differ = out.channels_differ || pixel[c] != pixel[0];
         }
     }
     return true;
@@ -101,20 +106,23 @@ bool read_tiled(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::Type
 
 template <typename T>
 bool read_as(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, SampleImage& out) {
-    return spec.tile_width > 0 ? read_tiled<T>(input, spec, type, out) : read_channels<T>(input, spec, type, out);
+    return spec.tile_width > 0 ? read_tiled<T>(input, spec, type, out)
+                               : read_channels<T>(input, spec, type, out);
 }
 
 Result<SampleImage> read_with_oiio(const std::filesystem::path& file, int max_side) {
     OIIO::ImageSpec hints;
-    hints.attribute("oiio:UnassociatedAlpha", 1); // leave the samples alone
+    hints.attribute("oiio:UnassociatedAlpha", 1);  // leave the samples alone
     auto input = OIIO::ImageInput::open(file.string(), &hints);
-    if (!input) return error("{} is not a picture that can be read: {}", file.string(), one_line(OIIO::geterror()));
+    if (!input)
+        return error("{} is not a picture that can be read: {}", file.string(), one_line(OIIO::geterror()));
     const OIIO::ImageSpec spec = input->spec();
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
-        return error("{} has {}x{}x{} pixels of {} channels, expected a flat picture", file.string(), spec.width,
-                     spec.height, spec.depth, spec.nchannels);
+        return error("{} has {}x{}x{} pixels of {} channels, expected a flat picture", file.string(),
+                     spec.width, spec.height, spec.depth, spec.nchannels);
     if (spec.width > max_side || spec.height > max_side)
-        return error("{} is too large: {}x{} samples, at most {} a side", file.string(), spec.width, spec.height, max_side);
+        return error("{} is too large: {}x{} samples, at most {} a side", file.string(), spec.width,
+                     spec.height, max_side);
 
     SampleImage out;
     out.width = spec.width;
@@ -171,7 +179,7 @@ Status write_caught(const std::filesystem::path& file, const OIIO::ImageSpec& sp
     }
 }
 
-} // namespace
+}  // namespace
 
 Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side) {
     LOAM_TRY(check_readable(file));
@@ -183,21 +191,24 @@ Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side
     }
 }
 
-Status write_samples_u16(const std::filesystem::path& file, int width, int height, std::span<const uint16_t> samples) {
-    return write_caught(file, OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::UINT16), OIIO::TypeDesc::UINT16,
-                        samples.data());
+Status write_samples_u16(const std::filesystem::path& file, int width, int height,
+                         std::span<const uint16_t> samples) {
+    return write_caught(file, OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::UINT16),
+                        OIIO::TypeDesc::UINT16, samples.data());
 }
 
-Status write_samples_float(const std::filesystem::path& file, int width, int height, std::span<const float> samples) {
+Status write_samples_float(const std::filesystem::path& file, int width, int height,
+                           std::span<const float> samples) {
     return write_caught(file, OIIO::ImageSpec(width, height, 1, OIIO::TypeDesc::FLOAT), OIIO::TypeDesc::FLOAT,
                         samples.data());
 }
 
-Status write_rgba8_png(const std::filesystem::path& file, int width, int height, std::span<const uint8_t> rgba) {
+Status write_rgba8_png(const std::filesystem::path& file, int width, int height,
+                       std::span<const uint8_t> rgba) {
     OIIO::ImageSpec spec(width, height, 4, OIIO::TypeDesc::UINT8);
     spec.attribute("oiio:ColorSpace", "sRGB");
     spec.attribute("oiio:UnassociatedAlpha", 1);
     return write_caught(file, spec, OIIO::TypeDesc::UINT8, rgba.data());
 }
 
-} // namespace loam
+}  // namespace loam

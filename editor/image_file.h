@@ -13,18 +13,21 @@ namespace loam {
 
 enum class SampleKind { unsigned_8, unsigned_16, signed_16, floating };
 
-// The first channel of a picture as it lies in the file: row 0 is the top (north), integers keep their values.
+// The first channel of a picture as it lies in the file: row 0 is the top (north), integers keep their
+// values.
 struct SampleImage {
     int width = 0, height = 0;
     int channel_count = 1;
-    bool channels_differ = false; // some pixel's red, green and blue are not equal (an alpha channel is not counted)
+    bool channels_differ =
+        false;  // some pixel's red, green and blue are not equal (an alpha channel is not counted)
     SampleKind kind = SampleKind::unsigned_16;
-    bool was_double = false;      // 64-bit floats, read as 32-bit ones
-    std::string format;           // "png", "tiff", "openexr", …
+    bool was_double = false;  // 64-bit floats, read as 32-bit ones
+    std::string format;       // "png", "tiff", "openexr", …
     std::vector<float> samples;
 };
 
-// Refuses a missing file, text, an unknown format, a file that is cut short, more than `max_side` pixels a side.
+// Refuses a missing file, text, an unknown format, a file that is cut short, more than `max_side` pixels a
+// side.
 [[nodiscard]] Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side);
 
 // Row 0 is the top. The format follows from the file's extension (png, tif, tiff, exr).
@@ -35,4 +38,4 @@ struct SampleImage {
 [[nodiscard]] Status write_rgba8_png(const std::filesystem::path& file, int width, int height,
                                      std::span<const uint8_t> rgba);
 
-} // namespace loam
+}  // namespace loam

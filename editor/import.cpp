@@ -17,8 +17,8 @@ constexpr int kRowsAtOnce = 64;
 Result<SampleImage> cropped(SampleImage image, const SampleCrop& crop) {
     if (crop.width < 2 || crop.height < 2 || crop.x < 0 || crop.y < 0 || crop.x + crop.width > image.width ||
         crop.y + crop.height > image.height)
-        return error("--crop {},{},{},{} is not inside the picture of {}x{} samples", crop.x, crop.y, crop.width,
-                     crop.height, image.width, image.height);
+        return error("--crop {},{},{},{} is not inside the picture of {}x{} samples", crop.x, crop.y,
+                     crop.width, crop.height, image.width, image.height);
     std::vector<float> samples;
     samples.reserve(static_cast<size_t>(crop.width) * static_cast<size_t>(crop.height));
     for (int row = crop.y; row < crop.y + crop.height; ++row) {
@@ -48,7 +48,9 @@ std::vector<int32_t> heights_of(const SampleImage& image, const HeightScale& sca
 double choose_index_spacing_m(double map_side_m, double height_spacing_m) {
     constexpr double kMostTexels = 4200, kFinest_m = 0.25, kCoarsest_m = 64;
     double spacing_m = kFinest_m;
-    while (spacing_m < kCoarsest_m && (spacing_m < height_spacing_m / 4 || map_side_m / spacing_m > kMostTexels)) spacing_m *= 2;
+    while (spacing_m < kCoarsest_m &&
+           (spacing_m < height_spacing_m / 4 || map_side_m / spacing_m > kMostTexels))
+        spacing_m *= 2;
     return spacing_m;
 }
 
@@ -60,7 +62,8 @@ ProjectSettings settings_for(const ImportRequest& request, int width, int height
     settings.height_samples_y = height;
     settings.height_spacing_m = request.spacing_m;
     settings.refine = default_refine(request.spacing_m);
-    settings.index_spacing_m = choose_index_spacing_m((std::max(width, height) - 1) * request.spacing_m, request.spacing_m);
+    settings.index_spacing_m =
+        choose_index_spacing_m((std::max(width, height) - 1) * request.spacing_m, request.spacing_m);
     return settings;
 }
 
@@ -71,13 +74,14 @@ Status write_heights(Document& document, const std::vector<int32_t>& mm, const P
     for (int row = 0; row < height; row += kRowsAtOnce) {
         const int rows = std::min(kRowsAtOnce, height - row);
         LOAM_TRY(writer.write_height_rows(
-            row, rows, std::span(mm).subspan(static_cast<size_t>(row) * width, static_cast<size_t>(rows) * width)));
+            row, rows,
+            std::span(mm).subspan(static_cast<size_t>(row) * width, static_cast<size_t>(rows) * width)));
         LOAM_TRY(step_progress(progress, static_cast<double>(row) / height, "writing heights"));
     }
     return writer.finish();
 }
 
-} // namespace
+}  // namespace
 
 Result<ImportReport> import_heights(const ImportRequest& request, const Progress& progress) {
     LOAM_TRY(step_progress(progress, 0.0, "reading"));
@@ -88,7 +92,8 @@ Result<ImportReport> import_heights(const ImportRequest& request, const Progress
         if (!image) return image.error();
     }
     const SampleSurvey survey = survey_samples(*image);
-    if (auto status = check_importable(*image, survey, request.spacing_m, request.fill_nan_m.has_value()); !status.ok())
+    if (auto status = check_importable(*image, survey, request.spacing_m, request.fill_nan_m.has_value());
+        !status.ok())
         return error("{}: {}", request.heights.string(), status.message());
     auto scale = choose_scale(*image, survey, request.scale);
     if (!scale) return error("{}: {}", request.heights.string(), scale.message());
@@ -117,10 +122,11 @@ Result<ImportReport> import_heights(const ImportRequest& request, const Progress
         if (!document) return document.error();
         const std::vector<int32_t> mm = heights_of(*image, *scale, request.fill_nan_m.value_or(0.0));
         LOAM_TRY(write_heights(**document, mm, part_of(progress, 0.5, 0.6)));
-        if (!settings.layers.empty()) LOAM_TRY(make_index_from_heights(**document, part_of(progress, 0.6, 1.0)));
+        if (!settings.layers.empty())
+            LOAM_TRY(make_index_from_heights(**document, part_of(progress, 0.6, 1.0)));
     }
     LOAM_TRY(folder->keep());
     return report;
 }
 
-} // namespace loam
+}  // namespace loam

@@ -18,4 +18,4 @@ Status create_project(const NewProjectRequest& request, const Progress& progress
     return folder->keep();
 }
 
-} // namespace loam
+}  // namespace loam

@@ -10,8 +10,8 @@ namespace loam {
 struct NewProjectRequest {
     std::filesystem::path project;
     RecipeRequest recipe;
-    int layer_size_texels = kRecipeLayerSize; // a power of two, 64 … 2048
+    int layer_size_texels = kRecipeLayerSize;  // a power of two, 64 … 2048
 };
 [[nodiscard]] Status create_project(const NewProjectRequest& request, const Progress& progress);
 
-} // namespace loam
+}  // namespace loam

@@ -17,11 +17,12 @@ void check_same_size(const Picture& a, const Picture& b) {
 }
 
 double luma(const Picture& p, int x, int y) {
-    const uint8_t* c = p.rgba.data() + 4 * (static_cast<size_t>(y) * static_cast<size_t>(p.width) + static_cast<size_t>(x));
-    return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; // Rec. 709 weights on encoded values
+    const uint8_t* c =
+        p.rgba.data() + 4 * (static_cast<size_t>(y) * static_cast<size_t>(p.width) + static_cast<size_t>(x));
+    return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2];  // Rec. 709 weights on encoded values
 }
 
-} // namespace
+}  // namespace
 
 float linear_from_srgb8(uint8_t value) {
     static const std::array<float, 256> table = [] {
@@ -98,4 +99,4 @@ double differing_share(const Picture& a, const Picture& b, int tolerance) {
     return static_cast<double>(differing) / static_cast<double>(std::max<size_t>(1, a.rgba.size() / 4));
 }
 
-} // namespace loam
+}  // namespace loam

@@ -18,14 +18,16 @@ class LinearAverage {
 
   private:
     int width_ = 0, height_ = 0, count_ = 0;
-    std::vector<float> sum_; // RGB a pixel
+    std::vector<float> sum_;  // RGB a pixel
 };
 
-// Peak signal-to-noise ratio of the sRGB-encoded RGB channels in dB; equal pictures give infinity. Sizes must agree.
+// Peak signal-to-noise ratio of the sRGB-encoded RGB channels in dB; equal pictures give infinity. Sizes must
+// agree.
 [[nodiscard]] double psnr_db(const Picture& a, const Picture& b);
-// Mean square of the Laplacian of the luma (4-neighbour stencil, borders left out): the energy of fine detail.
+// Mean square of the Laplacian of the luma (4-neighbour stencil, borders left out): the energy of fine
+// detail.
 [[nodiscard]] double laplacian_energy(const Picture& picture);
 // Share of pixels of which any channel differs by more than `tolerance`.
 [[nodiscard]] double differing_share(const Picture& a, const Picture& b, int tolerance);
 
-} // namespace loam
+}  // namespace loam

@@ -25,7 +25,8 @@ Result<NewFolder> NewFolder::create(const fs::path& target) {
     folder.target_ = place;
     const fs::path temporary = parent / fmt::format(".{}.part-{}", place.filename().string(), ::getpid());
     fs::remove_all(temporary, code);
-    if (!fs::create_directory(temporary, code)) return error("cannot create {}: {}", target.string(), code.message());
+    if (!fs::create_directory(temporary, code))
+        return error("cannot create {}: {}", target.string(), code.message());
     folder.temporary_ = temporary;
     return folder;
 }
@@ -46,4 +47,4 @@ Status NewFolder::keep() {
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

@@ -17,22 +17,27 @@ Json counters(const VirtualMap::Counters& c) {
             {"ejected", c.ejected}};
 }
 
-} // namespace
+}  // namespace
 
 Json to_report(const Dirt& dirt) {
     return {{"height", rects(dirt.height)}, {"index", rects(dirt.index)}, {"texture", rects(dirt.texture)}};
 }
 
 Json to_report(const Document::Statistics& s) {
-    return {{"height_pages", s.height_pages}, {"index_pages", s.index_pages},   {"database_bytes", s.database_bytes},
-            {"operators", s.operators},       {"commands", s.commands},         {"cached_pages", s.cached_pages},
+    return {{"height_pages", s.height_pages},
+            {"index_pages", s.index_pages},
+            {"database_bytes", s.database_bytes},
+            {"operators", s.operators},
+            {"commands", s.commands},
+            {"cached_pages", s.cached_pages},
             {"cache_bytes", s.cache_bytes}};
 }
 
 Json to_report(const ProjectSettings& s) {
     const WorldRect bounds = s.bounds();
     Json layers = Json::array();
-    for (const LayerEntry& layer : s.layers) layers.push_back({{"name", layer.name}, {"file", layer.file}, {"tile_m", layer.tile_m}});
+    for (const LayerEntry& layer : s.layers)
+        layers.push_back({{"name", layer.name}, {"file", layer.file}, {"tile_m", layer.tile_m}});
     return {{"name", s.name},
             {"size_m", {bounds.width(), bounds.height()}},
             {"height_samples", {s.height_samples_x, s.height_samples_y}},
@@ -48,7 +53,8 @@ Json to_report(const ProjectSettings& s) {
 Json to_report(const FrameStatistics& s) {
     Json memory = Json::object(), passes = Json::array();
     for (const MemoryRow& row : s.memory) memory[row.name] = row.bytes;
-    for (const gpu::PassTime& pass : s.passes) passes.push_back({{"pass", std::string(pass.name)}, {"gpu_ms", pass.gpu_ms}});
+    for (const gpu::PassTime& pass : s.passes)
+        passes.push_back({{"pass", std::string(pass.name)}, {"gpu_ms", pass.gpu_ms}});
     const VirtualTexture::Statistics& t = s.texture;
     return {{"patches", s.patches},
             {"patches_visible", s.patches_visible},
@@ -82,4 +88,4 @@ Json memory_report(Session& session) {
             {"rings", session.ring()->ring_bytes()}};
 }
 
-} // namespace loam
+}  // namespace loam

@@ -6,7 +6,8 @@ namespace loam {
 
 Status run_script(const std::filesystem::path& file, const std::function<Status(const Command&)>& run) {
     std::error_code code;
-    if (std::filesystem::is_directory(file, code)) return error("{} is a folder, expected a script", file.string());
+    if (std::filesystem::is_directory(file, code))
+        return error("{} is a folder, expected a script", file.string());
     std::ifstream stream(file);
     if (!stream) return error("cannot read the script {}", file.string());
     std::string line;
@@ -22,4 +23,4 @@ Status run_script(const std::filesystem::path& file, const std::function<Status(
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

@@ -16,9 +16,11 @@ namespace loam {
 namespace {
 
 constexpr uint32_t kFramesInFlight = 2;
-// Feedback is read back three frames later: the picture rests once so many frames in a row found nothing to improve.
+// Feedback is read back three frames later: the picture rests once so many frames in a row found nothing to
+// improve.
 constexpr int kRestingFrames = 4;
-// The reference: geometry this many node sides around the camera at full detail (a few hundred patches), with slots for all of them.
+// The reference: geometry this many node sides around the camera at full detail (a few hundred patches), with
+// slots for all of them.
 constexpr double kReferenceSplitDistance = 6.0;
 constexpr int kReferenceHeightSlots = 1024;
 constexpr int kReferenceSupersample = 4;
@@ -33,7 +35,7 @@ Result<double> largest_height_m(const Document& document) {
     return height_m_from_mm(*std::max_element(mm.begin(), mm.end()));
 }
 
-} // namespace
+}  // namespace
 
 struct Session::Recorder {
     std::filesystem::path path;
@@ -48,7 +50,8 @@ Session::~Session() {
     if (device_) device_->wait_idle();
 }
 
-Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& project, const SessionDesc& desc) {
+Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& project,
+                                               const SessionDesc& desc) {
     auto document = Document::open(project, desc.mode);
     if (!document) return document.error();
     std::unique_ptr<Session> session(new Session());
@@ -90,7 +93,8 @@ Result<Dirt> Session::apply(const Command& command) {
     if (recorder_) {
         const std::string line = to_json(command) + "\n";
         if (std::fputs(line.c_str(), recorder_->file) < 0 || std::fflush(recorder_->file) != 0) {
-            log(LogLevel::error, "recording to {} stopped: {}", recorder_->path.string(), std::strerror(errno));
+            log(LogLevel::error, "recording to {} stopped: {}", recorder_->path.string(),
+                std::strerror(errno));
             recorder_.reset();
         }
     }
@@ -108,8 +112,8 @@ Status Session::record_to(const std::filesystem::path& file) {
 
 // --- pictures ---
 
-Status Session::one_frame(Renderer& renderer, const Camera& camera, glm::uvec2 extent, const FrameSettings& settings,
-                          Picture* picture) {
+Status Session::one_frame(Renderer& renderer, const Camera& camera, glm::uvec2 extent,
+                          const FrameSettings& settings, Picture* picture) {
     auto frame = ring_->begin();
     if (!frame) return frame.error();
     gpu::Commands& commands = (*frame)->commands;
@@ -124,7 +128,8 @@ Status Session::one_frame(Renderer& renderer, const Camera& camera, glm::uvec2 e
             const size_t row_bytes = size_t{4} * filled.x;
             picture->rgba.resize(row_bytes * filled.y);
             for (size_t row = 0; row < filled.y; ++row)
-                std::memcpy(picture->rgba.data() + row * row_bytes, bytes.data() + row * image_width * 4, row_bytes);
+                std::memcpy(picture->rgba.data() + row * row_bytes, bytes.data() + row * image_width * 4,
+                            row_bytes);
         });
     }
     LOAM_TRY(ring_->finish(**frame));
@@ -132,7 +137,8 @@ Status Session::one_frame(Renderer& renderer, const Camera& camera, glm::uvec2 e
     return {};
 }
 
-Result<Picture> Session::settle(Renderer& renderer, const RenderRequest& request, const FrameSettings& frame) {
+Result<Picture> Session::settle(Renderer& renderer, const RenderRequest& request,
+                                const FrameSettings& frame) {
     const glm::uvec2 extent(request.width, request.height);
     int resting = 0;
     last_render_settled_ = false;
@@ -147,7 +153,8 @@ Result<Picture> Session::settle(Renderer& renderer, const RenderRequest& request
     return picture;
 }
 
-Result<Picture> Session::supersampled(Renderer& renderer, const RenderRequest& request, const FrameSettings& frame) {
+Result<Picture> Session::supersampled(Renderer& renderer, const RenderRequest& request,
+                                      const FrameSettings& frame) {
     const int n = std::max(1, request.supersample);
     if (n == 1) return settle(renderer, request, frame);
     LinearAverage average;
@@ -188,7 +195,8 @@ Result<Picture> Session::render(const RenderRequest& request) {
 Status Session::step(const Camera& camera, int width, int height, const FrameSettings& settings, int frames) {
     auto renderer = this->renderer();
     if (!renderer) return renderer.error();
-    for (int i = 0; i < frames; ++i) LOAM_TRY(one_frame(**renderer, camera, glm::uvec2(width, height), settings, nullptr));
+    for (int i = 0; i < frames; ++i)
+        LOAM_TRY(one_frame(**renderer, camera, glm::uvec2(width, height), settings, nullptr));
     return {};
 }
 
@@ -199,13 +207,14 @@ Camera Session::default_camera() {
         const auto height = height_m(at.x, at.y);
         return height ? *height : 0.0;
     };
-    // Over the corner, high enough to look over most of what is before it: the ground fills the foot of the picture and the far edge
-    // meets the sky in its upper third.
+    // Over the corner, high enough to look over most of what is before it: the ground fills the foot of the
+    // picture and the far edge meets the sky in its upper third.
     const glm::dvec2 corner = size * glm::dvec2(0.06, 0.04), middle = size * 0.55;
     const double side = std::max(size.x, size.y);
     const auto top = largest_height_m(*document_);
     const double over_corner_m = ground_m(corner) + 0.13 * side;
-    const double eye_m = std::max(over_corner_m, top ? std::min(*top + 0.02 * side, over_corner_m + 0.1 * side) : 0.0);
+    const double eye_m =
+        std::max(over_corner_m, top ? std::min(*top + 0.02 * side, over_corner_m + 0.1 * side) : 0.0);
     return Camera::look_at({corner, eye_m}, {middle, ground_m(middle) + 0.02 * side}, 0.9);
 }
 
@@ -250,4 +259,4 @@ Status save_png(const std::filesystem::path& file, const Picture& picture) {
     return write_rgba8_png(file, picture.width, picture.height, picture.rgba);
 }
 
-} // namespace loam
+}  // namespace loam

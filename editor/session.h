@@ -1,5 +1,5 @@
-// A session: device, document, renderer and recording together. The window, the Python module and the headless verbs
-// all work through it, so that they cannot differ.
+// A session: device, document, renderer and recording together. The window, the Python module and the
+// headless verbs all work through it, so that they cannot differ.
 #pragma once
 
 #include <filesystem>
@@ -27,27 +27,31 @@ struct SessionDesc {
 
 struct Picture {
     int width = 0, height = 0;
-    std::vector<uint8_t> rgba; // sRGB-encoded, row 0 is the top
+    std::vector<uint8_t> rgba;  // sRGB-encoded, row 0 is the top
 };
 
 struct RenderRequest {
     Camera camera;
     int width = 1280, height = 720;
     FrameSettings frame;
-    int max_frames = 600;     // until settled
-    int supersample = 1;      // n x n jittered pictures averaged in linear light
-    bool reference = false;   // direct shading, full geometry, at least 4 x 4 samples
+    int max_frames = 600;    // until settled
+    int supersample = 1;     // n x n jittered pictures averaged in linear light
+    bool reference = false;  // direct shading, full geometry, at least 4 x 4 samples
 };
 
 class Session {
   public:
-    static Result<std::unique_ptr<Session>> open(const std::filesystem::path& project, const SessionDesc& desc);
+    static Result<std::unique_ptr<Session>> open(const std::filesystem::path& project,
+                                                 const SessionDesc& desc);
     ~Session();
 
     Document& document() { return *document_; }
-    // The device and renderer are made at the first use: edits and queries of a script that renders nothing need no GPU.
+    // The device and renderer are made at the first use: edits and queries of a script that renders nothing
+    // need no GPU.
     Result<Renderer*> renderer();
-    Status start_device() { return make_device(); } // the window: something is on screen before the renderer is there
+    Status start_device() {
+        return make_device();
+    }  // the window: something is on screen before the renderer is there
     gpu::Device* device() { return device_.get(); }
     gpu::FrameRing* ring() { return ring_.get(); }
 
@@ -61,23 +65,28 @@ class Session {
     // `frames` frames, without waiting for the picture to settle.
     Status step(const Camera& camera, int width, int height, const FrameSettings& settings, int frames);
     [[nodiscard]] int frames_rendered() const { return frames_rendered_; }
-    [[nodiscard]] bool last_render_settled() const { return last_render_settled_; } // else max_frames ended it
+    [[nodiscard]] bool last_render_settled() const {
+        return last_render_settled_;
+    }  // else max_frames ended it
 
-    // The composed ground under a point: the renderer's pages when there is one, else composed without a device.
+    // The composed ground under a point: the renderer's pages when there is one, else composed without a
+    // device.
     Result<double> height_m(double x_m, double y_m);
     Result<glm::dvec3> normal(double x_m, double y_m);
     Result<IndexTexel> layer_at(double x_m, double y_m);
-    Result<std::optional<glm::dvec3>> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m = 50'000);
+    Result<std::optional<glm::dvec3>> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction,
+                                               double max_m = 50'000);
     // A view of the whole map from the south-west, above the ground.
     [[nodiscard]] Camera default_camera();
 
   private:
     Session();
     Status make_device();
-    Status make_query_maps(); // for the queries of a session that has no renderer
+    Status make_query_maps();  // for the queries of a session that has no renderer
     // Frames of `renderer` from one camera until another would not improve the picture; then the picture.
     Result<Picture> settle(Renderer& renderer, const RenderRequest& request, const FrameSettings& frame);
-    Result<Picture> supersampled(Renderer& renderer, const RenderRequest& request, const FrameSettings& frame);
+    Result<Picture> supersampled(Renderer& renderer, const RenderRequest& request,
+                                 const FrameSettings& frame);
     Status one_frame(Renderer& renderer, const Camera& camera, glm::uvec2 extent, const FrameSettings& frame,
                      Picture* picture);
 
@@ -100,4 +109,4 @@ class Session {
 [[nodiscard]] Result<Camera> parse_look_at(std::string_view text);
 Status save_png(const std::filesystem::path& file, const Picture& picture);
 
-} // namespace loam
+}  // namespace loam

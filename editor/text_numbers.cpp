@@ -16,11 +16,12 @@ std::string_view trimmed(std::string_view text) {
     return text.substr(first, text.find_last_not_of(" \t") - first + 1);
 }
 
-} // namespace
+}  // namespace
 
 Result<double> parse_number(std::string_view text) {
     std::string_view digits = text;
-    if (digits.starts_with('+') && !digits.starts_with("+-")) digits.remove_prefix(1); // from_chars takes no plus sign
+    if (digits.starts_with('+') && !digits.starts_with("+-"))
+        digits.remove_prefix(1);  // from_chars takes no plus sign
     double value = 0;
     const auto [end, code] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
     if (code != std::errc{} || end != digits.data() + digits.size() || digits.empty())
@@ -51,7 +52,8 @@ Result<std::vector<double>> parse_numbers(std::string_view text) {
 
 Result<PixelSize> parse_size(std::string_view text) {
     const size_t cross = text.find('x');
-    if (cross == std::string_view::npos) return error("size \"{}\" is not WIDTHxHEIGHT, as in 1280x720", text);
+    if (cross == std::string_view::npos)
+        return error("size \"{}\" is not WIDTHxHEIGHT, as in 1280x720", text);
     auto width = parse_integer(text.substr(0, cross));
     auto height = parse_integer(text.substr(cross + 1));
     if (!width || !height) return error("size \"{}\" is not WIDTHxHEIGHT, as in 1280x720", text);
@@ -60,4 +62,4 @@ Result<PixelSize> parse_size(std::string_view text) {
     return PixelSize{static_cast<int>(*width), static_cast<int>(*height)};
 }
 
-} // namespace loam
+}  // namespace loam

@@ -20,4 +20,4 @@ struct PixelSize {
 };
 [[nodiscard]] Result<PixelSize> parse_size(std::string_view text);
 
-} // namespace loam
+}  // namespace loam

@@ -1,4 +1,5 @@
-// Accuracy against the reference (per pixel, uncached, uncompressed, full geometry, supersampled), and time, together.
+// Accuracy against the reference (per pixel, uncached, uncompressed, full geometry, supersampled), and time,
+// together.
 #include <optional>
 
 #include "editor/bench/bench.h"
@@ -19,12 +20,21 @@ struct Setting {
 };
 
 constexpr Setting kSettings[] = {
-    {.name = "rgba8 pages, mid, 2x2 samples", .quality = Quality::mid, .format = PageFormat::rgba8, .supersample = 2},
+    {.name = "rgba8 pages, mid, 2x2 samples",
+     .quality = Quality::mid,
+     .format = PageFormat::rgba8,
+     .supersample = 2},
     {.name = "rgba8 pages, mid", .quality = Quality::mid, .format = PageFormat::rgba8},
     {.name = "bc1 pages, mid", .quality = Quality::mid, .format = PageFormat::bc1x3},
     {.name = "bc1 pages, low", .quality = Quality::low, .format = PageFormat::bc1x3},
-    {.name = "rgba8 pages, low, coarse filter", .quality = Quality::low, .format = PageFormat::rgba8, .fine_filter = false},
-    {.name = "direct, 1 sample", .quality = Quality::low, .format = PageFormat::rgba8, .shading = Shading::direct},
+    {.name = "rgba8 pages, low, coarse filter",
+     .quality = Quality::low,
+     .format = PageFormat::rgba8,
+     .fine_filter = false},
+    {.name = "direct, 1 sample",
+     .quality = Quality::low,
+     .format = PageFormat::rgba8,
+     .shading = Shading::direct},
 };
 
 struct View {
@@ -48,7 +58,8 @@ Result<std::vector<View>> views_of(const BenchRequest& request, Session& session
     return views;
 }
 
-Result<Json> measure(Session& session, const Setting& setting, const RenderRequest& base, const Picture& reference) {
+Result<Json> measure(Session& session, const Setting& setting, const RenderRequest& base,
+                     const Picture& reference) {
     RenderRequest r = base;
     r.supersample = setting.supersample;
     r.frame.shading = setting.shading;
@@ -64,14 +75,15 @@ Result<Json> measure(Session& session, const Setting& setting, const RenderReque
         LOAM_TRY(session.step(r.camera, r.width, r.height, r.frame, 1));
         frames.push_back(now_ms() - frame_start_ms);
     }
-    return Json{{"PSNR dB", rounded(psnr_db(*picture, reference), 2)},
-                {"fine detail", rounded(laplacian_energy(*picture) / std::max(1e-9, laplacian_energy(reference)), 3)},
-                {"ms a frame", rounded(spread_of(frames).median * setting.supersample * setting.supersample, 1)},
-                {"ms to settle", rounded(settle_ms, 0)},
-                {"settled", session.last_render_settled()}};
+    return Json{
+        {"PSNR dB", rounded(psnr_db(*picture, reference), 2)},
+        {"fine detail", rounded(laplacian_energy(*picture) / std::max(1e-9, laplacian_energy(reference)), 3)},
+        {"ms a frame", rounded(spread_of(frames).median * setting.supersample * setting.supersample, 1)},
+        {"ms to settle", rounded(settle_ms, 0)},
+        {"settled", session.last_render_settled()}};
 }
 
-} // namespace
+}  // namespace
 
 Result<BenchReport> bench_accuracy(const BenchRequest& request) {
     BenchReport report;
@@ -84,10 +96,16 @@ Result<BenchReport> bench_accuracy(const BenchRequest& request) {
         if (!chosen) return chosen.error();
         views = *chosen;
         for (const View& view : views) {
-            auto picture = (*session)->render({.camera = view.camera, .width = request.width, .height = request.height, .frame = {}, .reference = true});
+            auto picture = (*session)->render({.camera = view.camera,
+                                               .width = request.width,
+                                               .height = request.height,
+                                               .frame = {},
+                                               .reference = true});
             if (!picture) return picture.error();
             references.push_back(std::move(*picture));
-            report.push_back({fmt::format("{}, {}x{}, against the reference", view.name, request.width, request.height), {}});
+            report.push_back(
+                {fmt::format("{}, {}x{}, against the reference", view.name, request.width, request.height),
+                 {}});
         }
     }
     for (const Setting& setting : kSettings) {
@@ -98,8 +116,10 @@ Result<BenchReport> bench_accuracy(const BenchRequest& request) {
         auto session = Session::open(request.project, desc);
         if (!session) return session.error();
         for (size_t v = 0; v < views.size(); ++v) {
-            auto figures = measure(**session, setting,
-                                   {.camera = views[v].camera, .width = request.width, .height = request.height, .frame = {}}, references[v]);
+            auto figures = measure(
+                **session, setting,
+                {.camera = views[v].camera, .width = request.width, .height = request.height, .frame = {}},
+                references[v]);
             if (!figures) return figures.error();
             Json row{{"setting", setting.name}};
             row.update(*figures);
@@ -109,4 +129,4 @@ Result<BenchReport> bench_accuracy(const BenchRequest& request) {
     return report;
 }
 
-} // namespace loam::bench
+}  // namespace loam::bench

@@ -13,12 +13,16 @@ namespace fs = std::filesystem;
 
 const std::vector<BenchName>& benches() {
     static const std::vector<BenchName> table = {
-        {"accuracy", "PSNR and fine detail against the reference, and milliseconds, for several settings", bench_accuracy},
+        {"accuracy", "PSNR and fine detail against the reference, and milliseconds, for several settings",
+         bench_accuracy},
+        {"compose", "pages and rectangles composed; the parts of an edit's cost", bench_compose},
         {"crater", "one crater on a 1 km and on a 16 km map: pages, milliseconds, memory", bench_crater},
         {"edit", "pages and milliseconds of a dab, a footprint and a crater", bench_edit},
         {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
         {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},
-        {"start", "from the command to the first picture, with warm and with empty shader caches", bench_start},
+        {"resolve", "the resolve alone against three bilinear samples with the same light", bench_resolve},
+        {"start", "from the command to the first picture, with warm and with empty shader caches",
+         bench_start},
     };
     return table;
 }
@@ -34,7 +38,9 @@ std::string to_text(const BenchReport& report) {
             cells.emplace_back();
             for (const std::string& key : cells[0]) {
                 const Json value = row.value(key, Json());
-                cells.back().push_back(value.is_string() ? value.get<std::string>() : value.is_null() ? "-" : value.dump());
+                cells.back().push_back(value.is_string() ? value.get<std::string>()
+                                       : value.is_null() ? "-"
+                                                         : value.dump());
             }
         }
         for (const auto& row : cells) {
@@ -45,7 +51,7 @@ std::string to_text(const BenchReport& report) {
                 text += fmt::format(" {:<{}} |", row[c], width);
             }
             text += "\n";
-            if (&row == &cells.front()) { // Markdown's rule, so that the tables can be pasted
+            if (&row == &cells.front()) {  // Markdown's rule, so that the tables can be pasted
                 text += "|";
                 for (size_t c = 0; c < row.size(); ++c) text += " --- |";
                 text += "\n";
@@ -62,7 +68,8 @@ Json to_json(const BenchReport& report) {
 }
 
 double now_ms() {
-    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
+    return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch())
+        .count();
 }
 
 double rounded(double value, int decimals) {
@@ -73,14 +80,16 @@ double rounded(double value, int decimals) {
 Spread spread_of(std::vector<double> values) {
     if (values.empty()) return {};
     std::sort(values.begin(), values.end());
-    return {values[values.size() / 2], values[std::min(values.size() - 1, values.size() * 95 / 100)], values.back()};
+    return {values[values.size() / 2], values[std::min(values.size() - 1, values.size() * 95 / 100)],
+            values.back()};
 }
 
 // --- temporary projects ---
 
 Result<TemporaryProject> TemporaryProject::make_folder() {
     std::string pattern = (fs::temp_directory_path() / "loam-bench-XXXXXX").string();
-    if (!::mkdtemp(pattern.data())) return error("cannot create a temporary folder in {}", fs::temp_directory_path().string());
+    if (!::mkdtemp(pattern.data()))
+        return error("cannot create a temporary folder in {}", fs::temp_directory_path().string());
     TemporaryProject project;
     project.path_ = pattern;
     return project;
@@ -92,7 +101,8 @@ Result<TemporaryProject> TemporaryProject::create_flat(const fs::path& like, dou
     auto project = make_folder();
     if (!project) return project;
     std::error_code code;
-    if (fs::exists(like / "layers")) fs::copy(like / "layers", project->path_ / "layers", fs::copy_options::recursive, code);
+    if (fs::exists(like / "layers"))
+        fs::copy(like / "layers", project->path_ / "layers", fs::copy_options::recursive, code);
     if (code) return error("cannot copy the layers of {}: {}", like.string(), code.message());
     settings->height_spacing_m = 1;
     settings->height_samples_x = settings->height_samples_y = static_cast<int>(side_m) + 1;
@@ -113,11 +123,12 @@ Result<TemporaryProject> TemporaryProject::create_copy(const fs::path& of) {
     return project;
 }
 
-TemporaryProject::TemporaryProject(TemporaryProject&& other) noexcept : path_(std::exchange(other.path_, {})) {}
+TemporaryProject::TemporaryProject(TemporaryProject&& other) noexcept
+    : path_(std::exchange(other.path_, {})) {}
 
 TemporaryProject::~TemporaryProject() {
     std::error_code code;
     if (!path_.empty()) fs::remove_all(path_, code);
 }
 
-} // namespace loam::bench
+}  // namespace loam::bench

@@ -36,17 +36,19 @@ struct BenchName {
 [[nodiscard]] const std::vector<BenchName>& benches();
 
 Result<BenchReport> bench_accuracy(const BenchRequest& request);
+Result<BenchReport> bench_compose(const BenchRequest& request);
 Result<BenchReport> bench_crater(const BenchRequest& request);
 Result<BenchReport> bench_edit(const BenchRequest& request);
 Result<BenchReport> bench_frame(const BenchRequest& request);
 Result<BenchReport> bench_ground(const BenchRequest& request);
+Result<BenchReport> bench_resolve(const BenchRequest& request);
 Result<BenchReport> bench_start(const BenchRequest& request);
 
 [[nodiscard]] std::string to_text(const BenchReport& report);
 [[nodiscard]] Json to_json(const BenchReport& report);
 
 // --- shared steps ---
-[[nodiscard]] double now_ms(); // steady
+[[nodiscard]] double now_ms();  // steady
 [[nodiscard]] double rounded(double value, int decimals);
 struct Spread {
     double median = 0, p95 = 0, max = 0;
@@ -56,7 +58,8 @@ struct Spread {
 // A project in a temporary folder, removed with the object.
 class TemporaryProject {
   public:
-    // A flat map of `side_m` with the layers of `like`, heights every metre; nothing is written, so every page is all default.
+    // A flat map of `side_m` with the layers of `like`, heights every metre; nothing is written, so every
+    // page is all default.
     static Result<TemporaryProject> create_flat(const std::filesystem::path& like, double side_m);
     static Result<TemporaryProject> create_copy(const std::filesystem::path& of);
     TemporaryProject(TemporaryProject&& other) noexcept;
@@ -69,9 +72,11 @@ class TemporaryProject {
     std::filesystem::path path_;
 };
 
-// What one command costs: pages of every map, and milliseconds to the first changed and to the finished picture.
-Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height, const Command& command);
+// What one command costs: pages of every map, and milliseconds to the first changed and to the finished
+// picture.
+Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height,
+                          const Command& command);
 // The same for composing every resident page again.
 Result<Json> measure_compose_all(Session& session, const Camera& camera, int width, int height);
 
-} // namespace loam::bench
+}  // namespace loam::bench

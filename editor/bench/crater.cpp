@@ -1,11 +1,12 @@
-// Cost follows the edit, not the map: the same crater on maps of 1 km and 16 km, and what the runtime holds for each.
+// Cost follows the edit, not the map: the same crater on maps of 1 km and 16 km, and what the runtime holds
+// for each.
 #include "editor/bench/bench.h"
 
 namespace loam::bench {
 
 namespace {
 
-constexpr int kRepeats = 9; // craters side by side; medians are compared
+constexpr int kRepeats = 9;  // craters side by side; medians are compared
 
 Result<Json> crater_on(const BenchRequest& request, double side_m) {
     auto project = TemporaryProject::create_flat(request.project, side_m);
@@ -21,7 +22,7 @@ Result<Json> crater_on(const BenchRequest& request, double side_m) {
         const CraterCommand crater{{.x_m = place.x, .y_m = place.y, .radius_m = 10, .seed = 7}};
         auto figures = measure_edit(**session, view, request.width, request.height, {crater});
         if (!figures) return figures.error();
-        if (i == 0) continue; // the first one compiles pipelines
+        if (i == 0) continue;  // the first one compiles pipelines
         last = *figures;
         applied.push_back(last["apply ms"]);
         first.push_back(last["first changed ms"]);
@@ -42,7 +43,7 @@ Result<Json> crater_on(const BenchRequest& request, double side_m) {
     return row;
 }
 
-} // namespace
+}  // namespace
 
 Result<BenchReport> bench_crater(const BenchRequest& request) {
     BenchTable table{"a 10 m crater on flat maps (medians)", {}};
@@ -54,4 +55,4 @@ Result<BenchReport> bench_crater(const BenchRequest& request) {
     return BenchReport{table};
 }
 
-} // namespace loam::bench
+}  // namespace loam::bench

@@ -1,5 +1,5 @@
-// What an edit costs: pages and milliseconds of a brush dab, a footprint and a 10 m crater, against composing all resident
-// pages again. Works on a copy of the project.
+// What an edit costs: pages and milliseconds of a brush dab, a footprint and a 10 m crater, against composing
+// all resident pages again. Works on a copy of the project.
 #include <numbers>
 
 #include "editor/bench/bench.h"
@@ -14,7 +14,8 @@ Result<BenchReport> bench_edit(const BenchRequest& request) {
     const glm::dvec2 place = (*session)->document().bounds().center();
     auto ground = (*session)->height_m(place.x, place.y);
     if (!ground) return ground.error();
-    const Camera near_view = Camera::look_at({place.x, place.y - 4, *ground + 3}, {place.x, place.y, *ground});
+    const Camera near_view =
+        Camera::look_at({place.x, place.y - 4, *ground + 3}, {place.x, place.y, *ground});
     const Camera view = Camera::look_at({place.x, place.y - 45, *ground + 30}, {place.x, place.y, *ground});
 
     SculptCommand raise;
@@ -30,7 +31,8 @@ Result<BenchReport> bench_edit(const BenchRequest& request) {
     footprint.prints = {{.x_m = place.x, .y_m = place.y, .heading_rad = std::numbers::pi / 5}};
     CraterCommand crater{{.x_m = place.x, .y_m = place.y, .radius_m = 10, .seed = 7}};
 
-    BenchTable table{fmt::format("edits of {} at {}x{}", request.project.string(), request.width, request.height), {}};
+    BenchTable table{
+        fmt::format("edits of {} at {}x{}", request.project.string(), request.width, request.height), {}};
     const auto add = [&](const char* name, const Result<Json>& figures) -> Status {
         if (!figures) return figures.error();
         Json row{{"edit", name}};
@@ -47,4 +49,4 @@ Result<BenchReport> bench_edit(const BenchRequest& request) {
     return BenchReport{table};
 }
 
-} // namespace loam::bench
+}  // namespace loam::bench

@@ -1,5 +1,5 @@
-// A fly-through with painting, as a person would do it: every frame moves the camera, every fourth one paints or digs. The render
-// scale follows a frame-time goal.
+// A fly-through with painting, as a person would do it: every frame moves the camera, every fourth one paints
+// or digs. The render scale follows a frame-time goal.
 #include <algorithm>
 #include <cmath>
 
@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kSpeed_m_s = 40, kHeightAboveGround_m = 25, kFrame_s = 1.0 / 30;
 constexpr float kScales[] = {1.0f, 0.75f, 2.0f / 3, 0.5f, 1.0f / 3, 0.25f};
-constexpr int kSettleFrames = 12; // at a scale before it is judged
+constexpr int kSettleFrames = 12;  // at a scale before it is judged
 
 Command edit_of(int i, glm::dvec2 place, uint64_t group) {
     if (i % 2 == 0) {
@@ -36,14 +36,16 @@ Camera camera_at(Session& session, double along_m, double& ground_m) {
     const double radius_m = 0.3 * std::min(bounds.width(), bounds.height());
     const double angle = along_m / radius_m;
     const glm::dvec2 at(c.x + radius_m * std::sin(angle), c.y - radius_m * std::cos(angle));
-    const glm::dvec2 ahead(c.x + radius_m * std::sin(angle + 60 / radius_m), c.y - radius_m * std::cos(angle + 60 / radius_m));
+    const glm::dvec2 ahead(c.x + radius_m * std::sin(angle + 60 / radius_m),
+                           c.y - radius_m * std::cos(angle + 60 / radius_m));
     const auto here = session.height_m(at.x, at.y), there = session.height_m(ahead.x, ahead.y);
     const double wanted_m = std::max(here ? *here : 0.0, there ? *there : 0.0);
     ground_m += (wanted_m - ground_m) * 0.1;
-    return Camera::look_at({at.x, at.y, std::max(ground_m, wanted_m) + kHeightAboveGround_m}, {ahead.x, ahead.y, there ? *there : 0.0});
+    return Camera::look_at({at.x, at.y, std::max(ground_m, wanted_m) + kHeightAboveGround_m},
+                           {ahead.x, ahead.y, there ? *there : 0.0});
 }
 
-} // namespace
+}  // namespace
 
 Result<BenchReport> bench_frame(const BenchRequest& request) {
     auto copy = TemporaryProject::create_copy(request.project);
@@ -61,13 +63,14 @@ Result<BenchReport> bench_frame(const BenchRequest& request) {
     const uint64_t group = s.document().next_group();
     size_t scale = 0;
     std::vector<double> recent, all, edits;
-    std::vector<double> steady; // frames at the final scale
+    std::vector<double> steady;  // frames at the final scale
     for (int i = 0; i < request.frames; ++i) {
         const Camera camera = camera_at(s, i * kSpeed_m_s * kFrame_s, ground_m);
         const double start_ms = now_ms();
         if (i % 4 == 0) {
             const glm::dvec3 forward = camera.forward();
-            const glm::dvec2 place(camera.position_m.x + forward.x * 30, camera.position_m.y + forward.y * 30);
+            const glm::dvec2 place(camera.position_m.x + forward.x * 30,
+                                   camera.position_m.y + forward.y * 30);
             auto dirt = s.apply(edit_of(i / 4, place, group));
             if (!dirt) return dirt.error();
             edits.push_back(now_ms() - start_ms);
@@ -90,11 +93,16 @@ Result<BenchReport> bench_frame(const BenchRequest& request) {
     }
     const Spread a = spread_of(all), b = spread_of(steady), e = spread_of(edits);
     const auto row = [](const char* name, const Spread& spread, size_t count) {
-        return Json{{"what", name}, {"count", count}, {"median ms", rounded(spread.median, 1)}, {"p95 ms", rounded(spread.p95, 1)}, {"max ms", rounded(spread.max, 1)}};
+        return Json{{"what", name},
+                    {"count", count},
+                    {"median ms", rounded(spread.median, 1)},
+                    {"p95 ms", rounded(spread.p95, 1)},
+                    {"max ms", rounded(spread.max, 1)}};
     };
-    BenchReport report{{fmt::format("fly-through with painting, {}x{}, goal {} ms: render scale {:.2f}", request.width, request.height,
-                                    request.goal_ms, kScales[scale]),
-                        {row("frames at that scale", b, steady.size()), row("all frames", a, all.size()), row("commands", e, edits.size())}}};
+    BenchReport report{{fmt::format("fly-through with painting, {}x{}, goal {} ms: render scale {:.2f}",
+                                    request.width, request.height, request.goal_ms, kScales[scale]),
+                        {row("frames at that scale", b, steady.size()), row("all frames", a, all.size()),
+                         row("commands", e, edits.size())}}};
     auto renderer = s.renderer();
     if (!renderer) return renderer.error();
     BenchTable passes{"passes of the last frame, by timestamps (display only)", {}};
@@ -104,4 +112,4 @@ Result<BenchReport> bench_frame(const BenchRequest& request) {
     return report;
 }
 
-} // namespace loam::bench
+}  // namespace loam::bench

@@ -12,4 +12,4 @@ Result<BenchReport> bench_ground(const BenchRequest& request) {
     return BenchReport{{out.str(), {}}};
 }
 
-} // namespace loam::bench
+}  // namespace loam::bench

@@ -1,4 +1,5 @@
-// One edit, measured: wall clock from the command to the pictures (each frame is waited for), counters before and after.
+// One edit, measured: wall clock from the command to the pictures (each frame is waited for), counters before
+// and after.
 #include "editor/bench/bench.h"
 
 namespace loam::bench {
@@ -13,7 +14,8 @@ struct Pictures {
 };
 
 // Frames until the picture rests. `before` is the picture that rested before the change.
-Result<Pictures> watch(Session& session, const RenderRequest& request, const Picture& before, double start_ms) {
+Result<Pictures> watch(Session& session, const RenderRequest& request, const Picture& before,
+                       double start_ms) {
     auto renderer = session.renderer();
     if (!renderer) return renderer.error();
     Pictures seen;
@@ -50,8 +52,9 @@ Result<Json> measure(Session& session, const Camera& camera, int width, int heig
     if (!seen) return seen.error();
     const FrameStatistics b = (*renderer)->statistics();
     return Json{{"apply ms", rounded(applied_ms, 2)},
-                {"first changed ms", rounded(seen->first_changed_ms, 1)},
-                {"in frame", seen->first_changed_frame},
+                {"first changed ms",
+                 seen->first_changed_frame < 0 ? Json() : Json(rounded(seen->first_changed_ms, 1))},
+                {"in frame", seen->first_changed_frame < 0 ? Json() : Json(seen->first_changed_frame)},
                 {"settled ms", rounded(seen->settled_ms, 1)},
                 {"height dirtied", b.height.pages_dirtied - a.height.pages_dirtied},
                 {"height composed", b.height.pages_composed - a.height.pages_composed},
@@ -65,9 +68,10 @@ Result<Json> measure(Session& session, const Camera& camera, int width, int heig
                 {"texture texels", b.texture.texels_composed - a.texture.texels_composed}};
 }
 
-} // namespace
+}  // namespace
 
-Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height, const Command& command) {
+Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height,
+                          const Command& command) {
     return measure(session, camera, width, height, [&]() -> Status {
         auto dirt = session.apply(command);
         return dirt ? Status() : Status(dirt.error());
@@ -84,4 +88,4 @@ Result<Json> measure_compose_all(Session& session, const Camera& camera, int wid
     });
 }
 
-} // namespace loam::bench
+}  // namespace loam::bench

@@ -1,4 +1,5 @@
-// From the command to the first picture, as processes of their own: with warm caches, and with every shader cache empty.
+// From the command to the first picture, as processes of their own: with warm caches, and with every shader
+// cache empty.
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -23,7 +24,8 @@ std::vector<std::string> environment_with_cache(const fs::path& cache) {
     std::vector<std::string> out;
     for (char** entry = environ; *entry; ++entry) {
         const std::string_view text(*entry);
-        if (!text.starts_with("MESA_SHADER_CACHE_DIR=") && !text.starts_with("XDG_CACHE_HOME=")) out.emplace_back(text);
+        if (!text.starts_with("MESA_SHADER_CACHE_DIR=") && !text.starts_with("XDG_CACHE_HOME="))
+            out.emplace_back(text);
     }
     out.push_back("MESA_SHADER_CACHE_DIR=" + cache.string());
     out.push_back("XDG_CACHE_HOME=" + cache.string());
@@ -33,8 +35,15 @@ std::vector<std::string> environment_with_cache(const fs::path& cache) {
 // Milliseconds of `loam render PROJECT --max-frames 1`, process start and end included.
 Result<double> first_picture_ms(const fs::path& project, const fs::path& cache, const BenchRequest& request) {
     const fs::path picture = cache / "first.png";
-    std::vector<std::string> words{"loam", "render", project.string(), "--max-frames", "1", "--size",
-                                   fmt::format("{}x{}", request.width, request.height), "-o", picture.string()};
+    std::vector<std::string> words{"loam",
+                                   "render",
+                                   project.string(),
+                                   "--max-frames",
+                                   "1",
+                                   "--size",
+                                   fmt::format("{}x{}", request.width, request.height),
+                                   "-o",
+                                   picture.string()};
     if (!request.session.device.device_filter.empty()) {
         words.emplace_back("--device");
         words.push_back(request.session.device.device_filter);
@@ -57,7 +66,8 @@ Result<double> first_picture_ms(const fs::path& project, const fs::path& cache, 
     while (waitpid(pid, &status, 0) < 0 && errno == EINTR) {
     }
     const double ms = now_ms() - start_ms;
-    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) return error("loam render {} failed", project.string());
+    if (!WIFEXITED(status) || WEXITSTATUS(status) != 0)
+        return error("loam render {} failed", project.string());
     return ms;
 }
 
@@ -79,13 +89,17 @@ Result<Json> start_of(const std::string& name, const fs::path& project, const Be
         if (!ms) return ms.error();
         warm.push_back(*ms);
     }
-    return Json{{"map", name}, {"empty caches ms", rounded(*cold, 0)}, {"warm ms (median)", rounded(spread_of(warm).median, 0)}, {"warm ms (max)", rounded(spread_of(warm).max, 0)}};
+    return Json{{"map", name},
+                {"empty caches ms", rounded(*cold, 0)},
+                {"warm ms (median)", rounded(spread_of(warm).median, 0)},
+                {"warm ms (max)", rounded(spread_of(warm).max, 0)}};
 }
 
-} // namespace
+}  // namespace
 
 Result<BenchReport> bench_start(const BenchRequest& request) {
-    BenchTable table{fmt::format("from the command to the first picture, {}x{}", request.width, request.height), {}};
+    BenchTable table{
+        fmt::format("from the command to the first picture, {}x{}", request.width, request.height), {}};
     const auto add = [&](const std::string& name, const fs::path& project) -> Status {
         auto row = start_of(name, project, request);
         if (!row) return row.error();
@@ -101,4 +115,4 @@ Result<BenchReport> bench_start(const BenchRequest& request) {
     return BenchReport{table};
 }
 
-} // namespace loam::bench
+}  // namespace loam::bench

@@ -69,7 +69,7 @@ bool looks_like_option(const std::string& word) {
     return word.size() > 1 && word[0] == '-' && !(word[1] >= '0' && word[1] <= '9') && word[1] != '.';
 }
 
-} // namespace
+}  // namespace
 
 std::string nearest_word(std::string_view word, std::span<const std::string> candidates) {
     std::string best;
@@ -89,7 +89,8 @@ Result<Args> parse_args(std::span<const Positional> positionals, std::span<const
     for (size_t i = 0; i < arguments.size(); ++i) {
         const std::string& word = arguments[i];
         if (options_ended || !looks_like_option(word)) {
-            if (args.positionals_.size() == positionals.size()) return error("unexpected argument \"{}\"", word);
+            if (args.positionals_.size() == positionals.size())
+                return error("unexpected argument \"{}\"", word);
             args.positionals_.push_back(word);
             continue;
         }
@@ -99,7 +100,8 @@ Result<Args> parse_args(std::span<const Positional> positionals, std::span<const
         }
         const size_t equals = word.find('=');
         const std::string name = word.substr(0, equals);
-        const auto option = std::find_if(options.begin(), options.end(), [&](const Option& o) { return name == o.name; });
+        const auto option =
+            std::find_if(options.begin(), options.end(), [&](const Option& o) { return name == o.name; });
         if (option == options.end()) return unknown_option(name, options);
         if (args.values_.contains(name)) return error("option {} is given twice", name);
         std::vector<std::string>& values = args.values_[name];
@@ -110,14 +112,16 @@ Result<Args> parse_args(std::span<const Positional> positionals, std::span<const
         if (equals != std::string::npos) values.push_back(word.substr(equals + 1));
         while (static_cast<int>(values.size()) < option->count) {
             if (i + 1 >= arguments.size())
-                return error("option {} needs {} ({})", name, option->count == 1 ? "a value" : fmt::format("{} values", option->count),
+                return error("option {} needs {} ({})", name,
+                             option->count == 1 ? "a value" : fmt::format("{} values", option->count),
                              option->value);
             values.push_back(arguments[++i]);
         }
         for (const std::string& value : values) LOAM_TRY(check_value(*option, value));
     }
     if (args.positionals_.size() < positionals.size())
-        return error("{} is missing ({})", positionals[args.positionals_.size()].name, positionals[args.positionals_.size()].help);
+        return error("{} is missing ({})", positionals[args.positionals_.size()].name,
+                     positionals[args.positionals_.size()].help);
     return args;
 }
 
@@ -145,4 +149,4 @@ std::vector<double> Args::numbers(std::string_view option) const {
     return has(option) ? parse_numbers(text(option)).value() : std::vector<double>{};
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

@@ -31,7 +31,8 @@ int run(const std::vector<std::string>& words) {
     }
     if (!verb) {
         const std::string nearest = nearest_word(words[0], names);
-        const std::string hint = nearest.empty() ? "see loam --help" : fmt::format("did you mean {}?", nearest);
+        const std::string hint =
+            nearest.empty() ? "see loam --help" : fmt::format("did you mean {}?", nearest);
         return complain("", fmt::format("unknown verb \"{}\", {}", words[0], hint), kUsage);
     }
     for (const std::string& word : words)
@@ -41,18 +42,19 @@ int run(const std::vector<std::string>& words) {
         }
     const std::string prefix = fmt::format("{}: ", verb->name);
     const auto args = parse_args(verb->positionals, verb->options, std::span(words).subspan(1));
-    if (!args) return complain(prefix, fmt::format("{}; see loam {} --help", args.message(), verb->name), kUsage);
+    if (!args)
+        return complain(prefix, fmt::format("{}; see loam {} --help", args.message(), verb->name), kUsage);
     const loam::Status status = verb->run(*args);
     std::fflush(stdout);
     return status.ok() ? 0 : complain(prefix, status.message(), kFailed);
 }
 
-} // namespace
+}  // namespace
 
 int main(int argc, char** argv) {
     try {
         return run({argv + 1, argv + argc});
-    } catch (const std::exception& exception) { // out of memory and the like
+    } catch (const std::exception& exception) {  // out of memory and the like
         return complain("", exception.what(), kFailed);
     }
 }

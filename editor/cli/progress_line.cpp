@@ -19,7 +19,7 @@ void on_signal(int) {
     interrupted = 1;
 }
 
-} // namespace
+}  // namespace
 
 ProgressLine::ProgressLine() : is_terminal_(::isatty(STDERR_FILENO) != 0) {
     interrupted = 0;
@@ -56,4 +56,4 @@ Going ProgressLine::show(double share, std::string_view what) {
     return Going::on;
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

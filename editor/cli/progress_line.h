@@ -1,5 +1,5 @@
-// Progress of long verbs: a bar that is drawn over itself on a terminal, a line every ten percent elsewhere. Ctrl-C
-// cancels: the work stops at its next step and cleans up.
+// Progress of long verbs: a bar that is drawn over itself on a terminal, a line every ten percent elsewhere.
+// Ctrl-C cancels: the work stops at its next step and cleans up.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@ namespace loam::cli {
 
 class ProgressLine {
   public:
-    ProgressLine(); // from now on Ctrl-C and SIGTERM cancel rather than kill
+    ProgressLine();  // from now on Ctrl-C and SIGTERM cancel rather than kill
     ~ProgressLine();
     ProgressLine(const ProgressLine&) = delete;
 
-    [[nodiscard]] Progress callback(); // valid as long as this object
+    [[nodiscard]] Progress callback();  // valid as long as this object
 
   private:
     Going show(double share, std::string_view what);
@@ -23,4 +23,4 @@ class ProgressLine {
     std::string shown_what_;
 };
 
-} // namespace loam::cli
+}  // namespace loam::cli

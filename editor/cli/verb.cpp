@@ -13,11 +13,12 @@ std::string shown(const Option& option) {
     return *option.value ? fmt::format("{} {}", option.name, option.value) : std::string(option.name);
 }
 
-} // namespace
+}  // namespace
 
 const std::vector<Verb>& verbs() {
-    static const std::vector<Verb> table = {edit_verb(),   new_verb(),  import_verb(), export_verb(), replay_verb(),
-                                            render_verb(), info_verb(), verify_verb(), bench_verb()};
+    static const std::vector<Verb> table = {edit_verb(),   new_verb(),    import_verb(),
+                                            export_verb(), replay_verb(), render_verb(),
+                                            info_verb(),   verify_verb(), bench_verb()};
     return table;
 }
 
@@ -40,14 +41,16 @@ std::string help_text(const Verb& verb) {
 std::string overview_text() {
     std::string text = "loam VERB …: a live terrain editor\n\n";
     for (const Verb& verb : verbs()) text += fmt::format("  {:<8} {}\n", verb.name, verb.summary);
-    return text + "\nloam VERB --help says more about a verb. Exit status: 0 done, 1 failed, 2 wrong usage.\n";
+    return text +
+           "\nloam VERB --help says more about a verb. Exit status: 0 done, 1 failed, 2 wrong usage.\n";
 }
 
 std::vector<Option> with_device_options(std::vector<Option> options) {
     const Option device[] = {
         {"--device", ValueKind::text, "NAME", "part of the Vulkan device's name, or its number"},
         {"--validation", ValueKind::none, "", "Vulkan validation; its messages fail the command"},
-        {"--quality", ValueKind::text, "Q", "very_low, low, mid, high or ultra: the size of the virtual texture"},
+        {"--quality", ValueKind::text, "Q",
+         "very_low, low, mid, high or ultra: the size of the virtual texture"},
         {"--format", ValueKind::text, "F", "bc1 or rgba8: the format of texture pages; default by device"},
     };
     options.insert(options.end(), std::begin(device), std::end(device));
@@ -71,4 +74,4 @@ Result<SessionDesc> session_desc(const Args& args) {
     return desc;
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

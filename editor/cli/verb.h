@@ -14,7 +14,7 @@ struct Verb {
     std::vector<Positional> positionals;
     std::vector<Option> options;
     Status (*run)(const Args& args);
-    const char* notes = ""; // below the options in the help
+    const char* notes = "";  // below the options in the help
 };
 
 [[nodiscard]] const std::vector<Verb>& verbs();
@@ -36,4 +36,4 @@ struct Verb {
 [[nodiscard]] std::vector<Option> with_device_options(std::vector<Option> options);
 [[nodiscard]] Result<SessionDesc> session_desc(const Args& args);
 
-} // namespace loam::cli
+}  // namespace loam::cli

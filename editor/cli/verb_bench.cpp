@@ -14,7 +14,9 @@ Status run(const Args& args) {
     }
     if (!chosen) {
         const std::string nearest = nearest_word(args.positional(0), names);
-        return error("unknown bench \"{}\"{}", args.positional(0), nearest.empty() ? ", see loam bench --help" : fmt::format(", did you mean {}?", nearest));
+        return error(
+            "unknown bench \"{}\"{}", args.positional(0),
+            nearest.empty() ? ", see loam bench --help" : fmt::format(", did you mean {}?", nearest));
     }
     auto desc = session_desc(args);
     if (!desc) return desc.error();
@@ -35,26 +37,29 @@ Status run(const Args& args) {
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Verb bench_verb() {
     static const std::string notes = [] {
         std::string text = "Benches:";
-        for (const bench::BenchName& bench : bench::benches()) text += fmt::format("\n  {:<9} {}", bench.name, bench.summary);
+        for (const bench::BenchName& bench : bench::benches())
+            text += fmt::format("\n  {:<9} {}", bench.name, bench.summary);
         return text;
     }();
-    return {.name = "bench",
-            .summary = "measures",
-            .positionals = {{"NAME", "which bench, see below"}, {"PROJECT", "project folder; it is not changed"}},
-            .options = with_device_options({{"--size", ValueKind::size, "WxH", "of the pictures; default 960x540"},
-                                            {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]", "accuracy: this view only"},
-                                            {"--frames", ValueKind::integer, "N", "frame: how many; default 300"},
-                                            {"--goal", ValueKind::number, "MS", "frame: milliseconds a frame; default 33"},
-                                            {"--dem", ValueKind::text, "DIR", "ground: folder of real elevation data"},
-                                            {"--quick", ValueKind::none, "", "fewer views and repeats"},
-                                            {"--json", ValueKind::none, "", "print as JSON"}}),
-            .run = run,
-            .notes = notes.c_str()};
+    return {
+        .name = "bench",
+        .summary = "measures",
+        .positionals = {{"NAME", "which bench, see below"}, {"PROJECT", "project folder; it is not changed"}},
+        .options = with_device_options(
+            {{"--size", ValueKind::size, "WxH", "of the pictures; default 960x540"},
+             {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]", "accuracy: this view only"},
+             {"--frames", ValueKind::integer, "N", "frame: how many; default 300"},
+             {"--goal", ValueKind::number, "MS", "frame: milliseconds a frame; default 33"},
+             {"--dem", ValueKind::text, "DIR", "ground: folder of real elevation data"},
+             {"--quick", ValueKind::none, "", "fewer views and repeats"},
+             {"--json", ValueKind::none, "", "print as JSON"}}),
+        .run = run,
+        .notes = notes.c_str()};
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

@@ -22,7 +22,8 @@ Status run(const Args& args) {
     options.max_frames = args.integer("--max-frames", 0);
     options.report = args.has("--report");
     // The project is opened once here: a bad one is refused before a window flashes up.
-    if (auto document = Document::open(options.project, OpenMode::read_only); !document) return document.error();
+    if (auto document = Document::open(options.project, OpenMode::read_only); !document)
+        return document.error();
     if (run_window(options) != 0) return error("the window ended with a failure, see above");
     return {};
 #else
@@ -30,21 +31,24 @@ Status run(const Args& args) {
 #endif
 }
 
-} // namespace
+}  // namespace
 
 Verb edit_verb() {
-    return {.name = "edit",
-            .summary = "opens the window",
-            .positionals = {{"PROJECT", "project folder"}},
-            .options = {{"--size", ValueKind::size, "WxH", "of the window; default 1280x800"},
-                        {"--record", ValueKind::text, "FILE", "append every command to this script"},
-                        {"--shaders", ValueKind::text, "DIR", "read shaders from here and reload them when a file changes"},
-                        {"--ui-scale", ValueKind::number, "S", "size of the interface; default as the screen says"},
-                        {"--max-frames", ValueKind::integer, "N", "close after so many frames"},
-                        {"--report", ValueKind::none, "", "say what happens as JSON lines on stdout"},
-                        {"--device", ValueKind::text, "NAME", "part of the Vulkan device's name, or its number"},
-                        {"--validation", ValueKind::none, "", "Vulkan validation"}},
-            .run = run};
+    return {
+        .name = "edit",
+        .summary = "opens the window",
+        .positionals = {{"PROJECT", "project folder"}},
+        .options = {{"--size", ValueKind::size, "WxH", "of the window; default 1280x800"},
+                    {"--record", ValueKind::text, "FILE", "append every command to this script"},
+                    {"--shaders", ValueKind::text, "DIR",
+                     "read shaders from here and reload them when a file changes"},
+                    {"--ui-scale", ValueKind::number, "S",
+                     "size of the interface; default as the screen says"},
+                    {"--max-frames", ValueKind::integer, "N", "close after so many frames"},
+                    {"--report", ValueKind::none, "", "say what happens as JSON lines on stdout"},
+                    {"--device", ValueKind::text, "NAME", "part of the Vulkan device's name, or its number"},
+                    {"--validation", ValueKind::none, "", "Vulkan validation"}},
+        .run = run};
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

@@ -29,7 +29,8 @@ Result<ImportRequest> request_of(const Args& args) {
         const std::vector<double> v = args.numbers("--crop");
         if (v.size() != 4) return error("--crop has {} numbers, expected x,y,width,height", v.size());
         for (const double n : v)
-            if (n != std::floor(n) || std::abs(n) > 1e6) return error("--crop {} is not a count of samples", n);
+            if (n != std::floor(n) || std::abs(n) > 1e6)
+                return error("--crop {} is not a count of samples", n);
         request.crop = SampleCrop{int(v[0]), int(v[1]), int(v[2]), int(v[3])};
     }
     request.layer_size_texels = args.integer("--layer-size", 1024);
@@ -63,7 +64,7 @@ Status run(const Args& args) {
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Verb import_verb() {
     return {.name = "import",
@@ -71,16 +72,19 @@ Verb import_verb() {
             .positionals = {{"HEIGHTS", "16-bit PNG, or TIFF or EXR of floats in metres; row 0 is north"},
                             {"PROJECT", "folder to create"}},
             .options = {{"--spacing", ValueKind::number, "M", "metres between samples; default 1"},
-                        {"--range", ValueKind::number, "LOW HIGH", "metres of the smallest and the largest sample value", 2},
+                        {"--range", ValueKind::number, "LOW HIGH",
+                         "metres of the smallest and the largest sample value", 2},
                         {"--step", ValueKind::number, "M", "metres a unit: height = offset + sample * step"},
                         {"--offset", ValueKind::number, "M", "height of sample value 0"},
                         {"--fill-nan", ValueKind::number, "M", "height of samples that are NaN or infinite"},
-                        {"--crop", ValueKind::numbers, "X,Y,W,H", "this part of the picture, in samples from the upper left corner"},
-                        {"--layer-size", ValueKind::integer, "N", "texels a side of the layers' textures; default 1024, 0: no layers"},
+                        {"--crop", ValueKind::numbers, "X,Y,W,H",
+                         "this part of the picture, in samples from the upper left corner"},
+                        {"--layer-size", ValueKind::integer, "N",
+                         "texels a side of the layers' textures; default 1024, 0: no layers"},
                         {"--seed", ValueKind::integer, "N", "of the layers' textures; default 1"},
                         {"--json", ValueKind::none, "", "print what was found as JSON"}},
             .run = run,
             .notes = "Integer samples need --range (the metres of 0 and 65535) or --step and --offset."};
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

@@ -43,7 +43,8 @@ void print_tree(const Json& json, int indent) {
             for (const Json& row : value) {
                 std::string line;
                 for (const auto& [name, cell] : row.items())
-                    line += fmt::format("{}{}", line.empty() ? "" : "  ", cell.is_string() ? cell.get<std::string>() : cell.dump());
+                    line += fmt::format("{}{}", line.empty() ? "" : "  ",
+                                        cell.is_string() ? cell.get<std::string>() : cell.dump());
                 fmt::print("{:{}}{}\n", "", indent + 2, line);
             }
         } else {
@@ -83,16 +84,18 @@ Status run(const Args& args) {
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Verb info_verb() {
-    return {.name = "info",
-            .summary = "prints settings, sizes and devices of a project",
-            .positionals = {{"PROJECT", "project folder"}},
-            .options = with_device_options({{"--gpu", ValueKind::none, "", "render a few frames and print the memory table and the passes"},
-                                            {"--size", ValueKind::size, "WxH", "of those frames; default 960x540"},
-                                            {"--json", ValueKind::none, "", "print as JSON"}}),
-            .run = run};
+    return {
+        .name = "info",
+        .summary = "prints settings, sizes and devices of a project",
+        .positionals = {{"PROJECT", "project folder"}},
+        .options = with_device_options(
+            {{"--gpu", ValueKind::none, "", "render a few frames and print the memory table and the passes"},
+             {"--size", ValueKind::size, "WxH", "of those frames; default 960x540"},
+             {"--json", ValueKind::none, "", "print as JSON"}}),
+        .run = run};
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

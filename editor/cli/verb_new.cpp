@@ -19,23 +19,26 @@ Status run(const Args& args) {
 
 std::string recipe_notes() {
     std::string notes = "Recipes:";
-    for (const RecipeName& recipe : ground_recipe_names()) notes += fmt::format("\n  {:<8} {}", recipe.name, recipe.description);
+    for (const RecipeName& recipe : ground_recipe_names())
+        notes += fmt::format("\n  {:<8} {}", recipe.name, recipe.description);
     return notes;
 }
 
-} // namespace
+}  // namespace
 
 Verb new_verb() {
     static const std::string notes = recipe_notes();
-    return {.name = "new",
-            .summary = "makes an example project from a recipe",
-            .positionals = {{"PROJECT", "folder to create"}},
-            .options = {{"--recipe", ValueKind::text, "NAME", "which ground; default valley"},
-                        {"--size", ValueKind::number, "M", "side of the map in metres, 64 … 16800; default 4096"},
-                        {"--seed", ValueKind::integer, "N", "another number, another ground; default 1"},
-                        {"--layer-size", ValueKind::integer, "N", "texels a side of the layers' textures, a power of two from 64; default 1024"}},
-            .run = run,
-            .notes = notes.c_str()};
+    return {
+        .name = "new",
+        .summary = "makes an example project from a recipe",
+        .positionals = {{"PROJECT", "folder to create"}},
+        .options = {{"--recipe", ValueKind::text, "NAME", "which ground; default valley"},
+                    {"--size", ValueKind::number, "M", "side of the map in metres, 64 … 16800; default 4096"},
+                    {"--seed", ValueKind::integer, "N", "another number, another ground; default 1"},
+                    {"--layer-size", ValueKind::integer, "N",
+                     "texels a side of the layers' textures, a power of two from 64; default 1024"}},
+        .run = run,
+        .notes = notes.c_str()};
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

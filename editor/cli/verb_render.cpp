@@ -11,7 +11,8 @@ namespace {
 
 Result<RenderRequest> request_of(const Args& args, Session& session) {
     RenderRequest request;
-    if (args.has("--camera") && args.has("--look-at")) return error("--camera and --look-at exclude each other");
+    if (args.has("--camera") && args.has("--look-at"))
+        return error("--camera and --look-at exclude each other");
     if (args.has("--camera"))
         request.camera = parse_camera(args.text("--camera")).value();
     else if (args.has("--look-at"))
@@ -50,7 +51,8 @@ Status run(const Args& args) {
     const auto start = std::chrono::steady_clock::now();
     auto picture = (*session)->render(*request);
     if (!picture) return picture.error();
-    const double ms = std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     LOAM_TRY(save_png(file, *picture));
     const bool settled = (*session)->last_render_settled();
     const uint32_t messages = (*session)->device()->validation_message_count();
@@ -70,7 +72,7 @@ Status run(const Args& args) {
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Verb render_verb() {
     return {.name = "render",
@@ -78,17 +80,21 @@ Verb render_verb() {
             .positionals = {{"PROJECT", "project folder"}},
             .options = with_device_options(
                 {{"-o", ValueKind::text, "FILE", "picture to write, PNG; default out.png"},
-                 {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]", "metres and degrees; yaw is clockwise from north"},
+                 {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]",
+                  "metres and degrees; yaw is clockwise from north"},
                  {"--look-at", ValueKind::look_at, "EX,EY,EZ,TX,TY,TZ[,FOV]", "from an eye to a target"},
                  {"--size", ValueKind::size, "WxH", "pixels; default 1280x720"},
-                 {"--reference", ValueKind::none, "", "every pixel evaluated directly: no cache, no compression, at least 4x4 samples"},
+                 {"--reference", ValueKind::none, "",
+                  "every pixel evaluated directly: no cache, no compression, at least 4x4 samples"},
                  {"--supersample", ValueKind::integer, "N", "average of N x N pictures"},
-                 {"--render-scale", ValueKind::number, "S", "share of the width and height that is rendered; default 1"},
+                 {"--render-scale", ValueKind::number, "S",
+                  "share of the width and height that is rendered; default 1"},
                  {"--max-frames", ValueKind::integer, "N", "stop refining after so many; default 600"},
-                 {"--debug", ValueKind::text, "VIEW", "mips, sectors, normals, occlusion, indirection, shadow or albedo"},
+                 {"--debug", ValueKind::text, "VIEW",
+                  "mips, sectors, normals, occlusion, indirection, shadow or albedo"},
                  {"--json", ValueKind::none, "", "print figures as JSON"}}),
             .run = run,
             .notes = "Without a camera the whole map is shown from the south-west."};
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

@@ -21,7 +21,7 @@ Status run(const Args& args) {
         ++count;
         if (commit_log) {
             fmt::print("committed {}\n", count);
-            std::fflush(stdout); // said only after it is on disk, and at once: whoever kills us believes it
+            std::fflush(stdout);  // said only after it is on disk, and at once: whoever kills us believes it
         }
         return {};
     }));
@@ -33,16 +33,18 @@ Status run(const Args& args) {
     return {};
 }
 
-} // namespace
+}  // namespace
 
 Verb replay_verb() {
     return {.name = "replay",
             .summary = "runs a script of commands",
-            .positionals = {{"PROJECT", "project folder"}, {"SCRIPT", "one command a line as JSON; # begins a comment line"}},
-            .options = {{"--commit-log", ValueKind::none, "", "print \"committed N\" once command N is safe on disk"},
+            .positionals = {{"PROJECT", "project folder"},
+                            {"SCRIPT", "one command a line as JSON; # begins a comment line"}},
+            .options = {{"--commit-log", ValueKind::none, "",
+                         "print \"committed N\" once command N is safe on disk"},
                         {"--json", ValueKind::none, "", "print figures as JSON"}},
             .run = run,
             .notes = "Stops at the first line that fails; what came before stays done."};
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

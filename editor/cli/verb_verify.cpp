@@ -17,10 +17,11 @@ Status run(const Args& args) {
         if (!args.has("--json")) fmt::print("no fault found\n");
         return {};
     }
-    return error("{} {} found in {}", faults->size(), faults->size() == 1 ? "fault" : "faults", args.positional(0));
+    return error("{} {} found in {}", faults->size(), faults->size() == 1 ? "fault" : "faults",
+                 args.positional(0));
 }
 
-} // namespace
+}  // namespace
 
 Verb verify_verb() {
     return {.name = "verify",
@@ -30,4 +31,4 @@ Verb verify_verb() {
             .run = run};
 }
 
-} // namespace loam::cli
+}  // namespace loam::cli

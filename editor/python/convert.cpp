@@ -44,7 +44,9 @@ std::string command_line(const py::handle& command) {
         throw py::type_error("a command holds numbers, strings and lists, not " +
                              py::str(py::type::of(value).attr("__name__")).cast<std::string>());
     });
-    return py::module_::import("json").attr("dumps")(command, py::arg("default") = unpack).cast<std::string>();
+    return py::module_::import("json")
+        .attr("dumps")(command, py::arg("default") = unpack)
+        .cast<std::string>();
 }
 
 py::array_t<uint8_t> to_numpy(const Picture& picture) {
@@ -59,8 +61,9 @@ Camera to_camera(const py::handle& camera, Session& session) {
     if (py::isinstance<py::str>(camera)) return unwrap(parse_camera(camera.cast<std::string>()));
     std::string text;
     for (const py::handle& number : py::reinterpret_borrow<py::sequence>(camera))
-        text += (text.empty() ? "" : ",") + fmt::format("{}", py::float_(py::reinterpret_borrow<py::object>(number)).cast<double>());
+        text += (text.empty() ? "" : ",") +
+                fmt::format("{}", py::float_(py::reinterpret_borrow<py::object>(number)).cast<double>());
     return unwrap(parse_camera(text));
 }
 
-} // namespace loam::python
+}  // namespace loam::python

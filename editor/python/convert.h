@@ -10,7 +10,7 @@ namespace loam::python {
 
 namespace py = pybind11;
 
-struct PythonError : std::runtime_error { // becomes loam.Error
+struct PythonError : std::runtime_error {  // becomes loam.Error
     using std::runtime_error::runtime_error;
 };
 
@@ -24,8 +24,8 @@ void unwrap(const Status& status);
 [[nodiscard]] py::object to_python(const Json& json);
 // A dict or a string of JSON becomes the line that parse_command reads.
 [[nodiscard]] std::string command_line(const py::handle& command);
-[[nodiscard]] py::array_t<uint8_t> to_numpy(const Picture& picture); // (height, width, 4)
+[[nodiscard]] py::array_t<uint8_t> to_numpy(const Picture& picture);  // (height, width, 4)
 // None, a text as on the command line, or a tuple (x, y, z, yaw_deg, pitch_deg[, fov_deg]).
 [[nodiscard]] Camera to_camera(const py::handle& camera, Session& session);
 
-} // namespace loam::python
+}  // namespace loam::python

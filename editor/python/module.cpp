@@ -14,15 +14,22 @@ Going keep_going(double, std::string_view) {
     return Going::on;
 }
 
-void new_project(const std::string& path, const std::string& recipe, double size_m, uint32_t seed, int layer_size) {
+void new_project(const std::string& path, const std::string& recipe, double size_m, uint32_t seed,
+                 int layer_size) {
     const py::gil_scoped_release release;
     unwrap(create_project({path, {recipe, size_m, seed}, layer_size}, keep_going));
 }
 
-py::object import_project(const std::string& heights, const std::string& path, double spacing_m, const py::object& range_m,
-                          const py::object& step_m, double offset_m, const py::object& fill_nan_m, int layer_size) {
-    ImportRequest request{.heights = heights, .project = path, .spacing_m = spacing_m, .scale = {},
-                          .fill_nan_m = {}, .crop = {}, .layer_size_texels = layer_size};
+py::object import_project(const std::string& heights, const std::string& path, double spacing_m,
+                          const py::object& range_m, const py::object& step_m, double offset_m,
+                          const py::object& fill_nan_m, int layer_size) {
+    ImportRequest request{.heights = heights,
+                          .project = path,
+                          .spacing_m = spacing_m,
+                          .scale = {},
+                          .fill_nan_m = {},
+                          .crop = {},
+                          .layer_size_texels = layer_size};
     if (!range_m.is_none()) {
         const auto range = range_m.cast<std::pair<double, double>>();
         request.scale.has_range = true;
@@ -47,28 +54,33 @@ py::object import_project(const std::string& heights, const std::string& path, d
                           {"warnings", report.diagnosis.warnings}});
 }
 
-} // namespace
+}  // namespace
 
-} // namespace loam::python
+}  // namespace loam::python
 
 PYBIND11_MODULE(loam, module) {
     using namespace loam::python;
     module.doc() = "Loam: open terrain projects, edit them with commands, query and render them.";
     py::register_exception<PythonError>(module, "Error", PyExc_RuntimeError);
     bind_project(module);
-    module.def("new", &new_project, "Makes an example project from a recipe.", py::arg("path"), py::arg("recipe") = "valley",
-               py::arg("size_m") = 4096.0, py::arg("seed") = 1, py::arg("layer_size") = 1024);
-    module.def("import_heights", &import_project, "Makes a project from a picture of heights; returns what was found in it.",
-               py::arg("heights"), py::arg("path"), py::arg("spacing_m") = 1.0, py::arg("range_m") = py::none(),
+    module.def("new", &new_project, "Makes an example project from a recipe.", py::arg("path"),
+               py::arg("recipe") = "valley", py::arg("size_m") = 4096.0, py::arg("seed") = 1,
+               py::arg("layer_size") = 1024);
+    module.def("import_heights", &import_project,
+               "Makes a project from a picture of heights; returns what was found in it.", py::arg("heights"),
+               py::arg("path"), py::arg("spacing_m") = 1.0, py::arg("range_m") = py::none(),
                py::arg("step_m") = py::none(), py::arg("offset_m") = 0.0, py::arg("fill_nan_m") = py::none(),
                py::arg("layer_size") = 1024);
     module.def(
         "open",
-        [](const std::string& path, const std::string& device, bool read_only, bool validation, const std::string& quality,
-           const std::string& format) { return std::make_unique<Project>(path, device, read_only, validation, quality, format); },
-        "Opens a project.", py::arg("path"), py::arg("device") = "", py::arg("read_only") = false, py::arg("validation") = false,
-        py::arg("quality") = "", py::arg("format") = "");
+        [](const std::string& path, const std::string& device, bool read_only, bool validation,
+           const std::string& quality, const std::string& format) {
+            return std::make_unique<Project>(path, device, read_only, validation, quality, format);
+        },
+        "Opens a project.", py::arg("path"), py::arg("device") = "", py::arg("read_only") = false,
+        py::arg("validation") = false, py::arg("quality") = "", py::arg("format") = "");
     module.def(
-        "verify", [](const std::string& path) { return to_python(loam::Json(unwrap(loam::Document::verify(path)))); },
+        "verify",
+        [](const std::string& path) { return to_python(loam::Json(unwrap(loam::Document::verify(path)))); },
         "Reads everything in a project and returns its faults, one sentence each.", py::arg("path"));
 }

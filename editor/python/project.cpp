@@ -23,18 +23,21 @@ py::object height(Project& p, const py::object& x, const py::object& y) {
 }
 
 py::object layer(Project& p, const py::object& x, const py::object& y) {
-    return over_points(x, y, [&](double px, double py_) { return int(unwrap(p.session().layer_at(px, py_)).layer); });
+    return over_points(
+        x, y, [&](double px, double py_) { return int(unwrap(p.session().layer_at(px, py_)).layer); });
 }
 
 // (…, 3)
 py::object normal(Project& p, const py::object& x, const py::object& y) {
     py::list parts;
     for (int axis = 0; axis < 3; ++axis)
-        parts.append(over_points(x, y, [&](double px, double py_) { return unwrap(p.session().normal(px, py_))[axis]; }));
+        parts.append(over_points(
+            x, y, [&](double px, double py_) { return unwrap(p.session().normal(px, py_))[axis]; }));
     return py::module_::import("numpy").attr("stack")(parts, py::arg("axis") = -1);
 }
 
-py::object ray_cast(Project& p, const std::array<double, 3>& origin, const std::array<double, 3>& direction, double max_m) {
+py::object ray_cast(Project& p, const std::array<double, 3>& origin, const std::array<double, 3>& direction,
+                    double max_m) {
     const glm::dvec3 d(direction[0], direction[1], direction[2]);
     const double length = std::sqrt(d.x * d.x + d.y * d.y + d.z * d.z);
     if (!(length > 0)) throw PythonError("the direction of a ray has no length");
@@ -43,15 +46,16 @@ py::object ray_cast(Project& p, const std::array<double, 3>& origin, const std::
     return py::make_tuple(hit->x, hit->y, hit->z);
 }
 
-py::array_t<uint8_t> render(Project& p, const py::object& camera, std::pair<int, int> size, bool reference, int supersample,
-                            const std::string& debug, double render_scale, int max_frames) {
+py::array_t<uint8_t> render(Project& p, const py::object& camera, std::pair<int, int> size, bool reference,
+                            int supersample, const std::string& debug, double render_scale, int max_frames) {
     Session& session = p.session();
     RenderRequest request;
     request.camera = to_camera(camera, session);
     request.width = size.first;
     request.height = size.second;
     if (size.first < 1 || size.second < 1 || size.first > 16384 || size.second > 16384)
-        throw PythonError(fmt::format("size {}x{} is outside 1 … 16384 pixels a side", size.first, size.second));
+        throw PythonError(
+            fmt::format("size {}x{} is outside 1 … 16384 pixels a side", size.first, size.second));
     request.reference = reference;
     request.supersample = supersample;
     request.max_frames = max_frames;
@@ -94,7 +98,10 @@ py::object stats(Project& p) {
 py::object history(Project& p, int newest) {
     Json out = Json::array();
     for (const auto& entry : unwrap(p.session().document().history(newest)))
-        out.push_back({{"sequence", entry.sequence}, {"group", entry.group}, {"applied", entry.applied}, {"command", Json::parse(entry.json)}});
+        out.push_back({{"sequence", entry.sequence},
+                       {"group", entry.group},
+                       {"applied", entry.applied},
+                       {"command", Json::parse(entry.json)}});
     return to_python(out);
 }
 
@@ -103,9 +110,18 @@ py::object operators(Project& p) {
     for (const Operator& op : p.session().document().operators()) {
         Json row = {{"id", op.id}, {"order", op.order}, {"enabled", op.enabled}};
         if (const Crater* c = std::get_if<Crater>(&op.shape))
-            row.update(Json{{"kind", "crater"}, {"x", c->x_m}, {"y", c->y_m}, {"radius_m", c->radius_m}, {"depth_m", c->depth_m}, {"seed", c->seed}});
+            row.update(Json{{"kind", "crater"},
+                            {"x", c->x_m},
+                            {"y", c->y_m},
+                            {"radius_m", c->radius_m},
+                            {"depth_m", c->depth_m},
+                            {"seed", c->seed}});
         if (const Footprint* f = std::get_if<Footprint>(&op.shape))
-            row.update(Json{{"kind", "footprint"}, {"x", f->x_m}, {"y", f->y_m}, {"heading_rad", f->heading_rad}, {"foot", f->foot}});
+            row.update(Json{{"kind", "footprint"},
+                            {"x", f->x_m},
+                            {"y", f->y_m},
+                            {"heading_rad", f->heading_rad},
+                            {"foot", f->foot}});
         out.push_back(row);
     }
     return to_python(out);
@@ -120,61 +136,98 @@ uint32_t count_stale_pages(Project& p) {
 
 void bind_edits(py::class_<Project>& c) {
     using Points = std::vector<std::array<double, 2>>;
-    c.def("apply", &Project::apply, "Applies a command (a dict or JSON); returns the rectangles it touched.", py::arg("command"));
-    c.def("sculpt", [](Project& p, const std::string& mode, const Points& dabs, double radius_m, double strength, double hardness,
-                       double target_m, uint64_t group) {
-        Json j = {{"cmd", "sculpt"}, {"mode", mode}, {"dabs", dabs}, {"radius_m", radius_m}, {"hardness", hardness}};
-        j[mode == "raise" || mode == "lower" ? "strength_m" : "strength"] = strength;
-        if (mode == "flatten") j["target_m"] = target_m;
-        if (group) j["group"] = group;
-        return p.apply_json(j);
-    }, "raise, lower (strength in metres a dab), smooth or flatten (strength 0 … 1).",
-          py::arg("mode"), py::arg("dabs"), py::arg("radius_m") = 10.0, py::arg("strength") = 0.5, py::arg("hardness") = 0.5,
-          py::arg("target_m") = 0.0, py::arg("group") = 0);
-    c.def("paint", [](Project& p, const Points& dabs, const py::object& layer_name, double radius_m, double strength, double hardness,
-                      const py::object& tint, uint32_t seed, uint64_t group) {
-        Json j = {{"cmd", "paint"}, {"dabs", dabs}, {"radius_m", radius_m}, {"strength", strength}, {"hardness", hardness}, {"seed", seed}};
-        if (!layer_name.is_none()) j["layer"] = layer_name.cast<std::string>();
-        if (!tint.is_none()) j["tint"] = tint.cast<std::array<double, 3>>();
-        if (group) j["group"] = group;
-        return p.apply_json(j);
-    }, "Paints a layer, a tint (sRGB 0 … 1), or both.",
-          py::arg("dabs"), py::arg("layer") = py::none(), py::arg("radius_m") = 5.0, py::arg("strength") = 1.0,
-          py::arg("hardness") = 0.5, py::arg("tint") = py::none(), py::arg("seed") = 0, py::arg("group") = 0);
-    c.def("crater", [](Project& p, double x, double y, double radius_m, double depth_m, uint32_t seed) {
-        Json j = {{"cmd", "crater"}, {"x", x}, {"y", y}, {"radius_m", radius_m}, {"seed", seed}};
-        if (depth_m > 0) j["depth_m"] = depth_m;
-        return p.apply_json(j);
-    }, "A crater; depth 0: two fifths of the radius.",
-          py::arg("x"), py::arg("y"), py::arg("radius_m") = 10.0, py::arg("depth_m") = 0.0, py::arg("seed") = 0);
-    c.def("footprints", [](Project& p, const std::vector<std::array<double, 3>>& prints, double length_m, double depth_m, uint32_t seed) {
-        Json list = Json::array();
-        for (size_t i = 0; i < prints.size(); ++i)
-            list.push_back({{"x", prints[i][0]}, {"y", prints[i][1]}, {"heading_rad", prints[i][2]}, {"foot", i % 2}});
-        return p.apply_json({{"cmd", "footprints"}, {"prints", list}, {"length_m", length_m}, {"depth_m", depth_m}, {"seed", seed}});
-    }, "Footprints at (x, y, heading_rad), left and right in turn.",
-          py::arg("prints"), py::arg("length_m") = 0.3, py::arg("depth_m") = 0.03, py::arg("seed") = 0);
-    c.def("undo", [](Project& p) { return p.apply_json({{"cmd", "undo"}}); }, "Undoes the newest group of commands.");
+    c.def("apply", &Project::apply, "Applies a command (a dict or JSON); returns the rectangles it touched.",
+          py::arg("command"));
+    c.def(
+        "sculpt",
+        [](Project& p, const std::string& mode, const Points& dabs, double radius_m, double strength,
+           double hardness, double target_m, uint64_t group) {
+            Json j = {{"cmd", "sculpt"},
+                      {"mode", mode},
+                      {"dabs", dabs},
+                      {"radius_m", radius_m},
+                      {"hardness", hardness}};
+            j[mode == "raise" || mode == "lower" ? "strength_m" : "strength"] = strength;
+            if (mode == "flatten") j["target_m"] = target_m;
+            if (group) j["group"] = group;
+            return p.apply_json(j);
+        },
+        "raise, lower (strength in metres a dab), smooth or flatten (strength 0 … 1).", py::arg("mode"),
+        py::arg("dabs"), py::arg("radius_m") = 10.0, py::arg("strength") = 0.5, py::arg("hardness") = 0.5,
+        py::arg("target_m") = 0.0, py::arg("group") = 0);
+    c.def(
+        "paint",
+        [](Project& p, const Points& dabs, const py::object& layer_name, double radius_m, double strength,
+           double hardness, const py::object& tint, uint32_t seed, uint64_t group) {
+            Json j = {{"cmd", "paint"},       {"dabs", dabs},         {"radius_m", radius_m},
+                      {"strength", strength}, {"hardness", hardness}, {"seed", seed}};
+            if (!layer_name.is_none()) j["layer"] = layer_name.cast<std::string>();
+            if (!tint.is_none()) j["tint"] = tint.cast<std::array<double, 3>>();
+            if (group) j["group"] = group;
+            return p.apply_json(j);
+        },
+        "Paints a layer, a tint (sRGB 0 … 1), or both.", py::arg("dabs"), py::arg("layer") = py::none(),
+        py::arg("radius_m") = 5.0, py::arg("strength") = 1.0, py::arg("hardness") = 0.5,
+        py::arg("tint") = py::none(), py::arg("seed") = 0, py::arg("group") = 0);
+    c.def(
+        "crater",
+        [](Project& p, double x, double y, double radius_m, double depth_m, uint32_t seed) {
+            Json j = {{"cmd", "crater"}, {"x", x}, {"y", y}, {"radius_m", radius_m}, {"seed", seed}};
+            if (depth_m > 0) j["depth_m"] = depth_m;
+            return p.apply_json(j);
+        },
+        "A crater; depth 0: two fifths of the radius.", py::arg("x"), py::arg("y"),
+        py::arg("radius_m") = 10.0, py::arg("depth_m") = 0.0, py::arg("seed") = 0);
+    c.def(
+        "footprints",
+        [](Project& p, const std::vector<std::array<double, 3>>& prints, double length_m, double depth_m,
+           uint32_t seed) {
+            Json list = Json::array();
+            for (size_t i = 0; i < prints.size(); ++i)
+                list.push_back({{"x", prints[i][0]},
+                                {"y", prints[i][1]},
+                                {"heading_rad", prints[i][2]},
+                                {"foot", i % 2}});
+            return p.apply_json({{"cmd", "footprints"},
+                                 {"prints", list},
+                                 {"length_m", length_m},
+                                 {"depth_m", depth_m},
+                                 {"seed", seed}});
+        },
+        "Footprints at (x, y, heading_rad), left and right in turn.", py::arg("prints"),
+        py::arg("length_m") = 0.3, py::arg("depth_m") = 0.03, py::arg("seed") = 0);
+    c.def(
+        "undo",
+        [](Project& p) {
+            return p.apply_json({{"cmd", "undo"}});
+        },
+        "Undoes the newest group of commands.");
     c.def("redo", [](Project& p) { return p.apply_json({{"cmd", "redo"}}); });
     c.def_property_readonly("can_undo", [](Project& p) { return p.session().document().can_undo(); });
     c.def_property_readonly("can_redo", [](Project& p) { return p.session().document().can_redo(); });
-    c.def("record_to", [](Project& p, const std::string& file) { unwrap(p.session().record_to(file)); },
-          "Appends every command from now on to a script.", py::arg("file"));
+    c.def(
+        "record_to", [](Project& p, const std::string& file) { unwrap(p.session().record_to(file)); },
+        "Appends every command from now on to a script.", py::arg("file"));
 }
 
 void bind_queries(py::class_<Project>& c) {
-    c.def("height", &height, "Height of the composed ground in metres at points (numbers or arrays).", py::arg("x"), py::arg("y"));
+    c.def("height", &height, "Height of the composed ground in metres at points (numbers or arrays).",
+          py::arg("x"), py::arg("y"));
     c.def("normal", &normal, "Unit normals, shape (…, 3).", py::arg("x"), py::arg("y"));
     c.def("layer", &layer, "Layer numbers.", py::arg("x"), py::arg("y"));
-    c.def("ray_cast", &ray_cast, "First hit (x, y, z) of a ray with the ground, or None.", py::arg("origin"), py::arg("direction"),
-          py::arg("max_m") = 50'000.0);
+    c.def("ray_cast", &ray_cast, "First hit (x, y, z) of a ray with the ground, or None.", py::arg("origin"),
+          py::arg("direction"), py::arg("max_m") = 50'000.0);
     c.def("stats", &stats, "Figures of document, frame and memory.");
     c.def("history", &history, "The newest commands.", py::arg("newest") = 100);
     c.def("operators", &operators, "Craters, footprints and so on, in order.");
-    c.def("digest", [](Project& p) { return unwrap(p.session().document().content_digest()); },
-          "A number of all base pages and operators: equal digests, equal documents.");
-    c.def("count_stale_pages", &count_stale_pages, "Resident pages that differ from their composition from nothing: always 0.");
-    c.def("validation_messages", [](Project& p) { return p.session().device() ? p.session().device()->validation_message_count() : 0u; });
+    c.def(
+        "digest", [](Project& p) { return unwrap(p.session().document().content_digest()); },
+        "A number of all base pages and operators: equal digests, equal documents.");
+    c.def("count_stale_pages", &count_stale_pages,
+          "Resident pages that differ from their composition from nothing: always 0.");
+    c.def("validation_messages", [](Project& p) {
+        return p.session().device() ? p.session().device()->validation_message_count() : 0u;
+    });
     c.def_property_readonly("bounds", [](Project& p) {
         const WorldRect b = p.session().document().bounds();
         return py::make_tuple(b.min_x, b.min_y, b.max_x, b.max_y);
@@ -186,10 +239,10 @@ void bind_queries(py::class_<Project>& c) {
     });
 }
 
-} // namespace
+}  // namespace
 
-Project::Project(const std::string& path, const std::string& device, bool read_only, bool validation, const std::string& quality,
-                 const std::string& format) {
+Project::Project(const std::string& path, const std::string& device, bool read_only, bool validation,
+                 const std::string& quality, const std::string& format) {
     SessionDesc desc;
     desc.device.device_filter = device;
     desc.device.validation = validation;
@@ -214,25 +267,34 @@ py::object Project::apply_json(const Json& command) {
 
 void bind_project(py::module_& module) {
     py::class_<Camera>(module, "Camera")
-        .def_static("look_at", [](std::array<double, 3> eye, std::array<double, 3> target, double fov_deg) {
-            return Camera::look_at({eye[0], eye[1], eye[2]}, {target[0], target[1], target[2]}, fov_deg * 0.017453292519943295);
-        }, py::arg("eye"), py::arg("target"), py::arg("fov_deg") = 57.0)
-        .def_property_readonly("position", [](const Camera& c) { return py::make_tuple(c.position_m.x, c.position_m.y, c.position_m.z); })
+        .def_static(
+            "look_at",
+            [](std::array<double, 3> eye, std::array<double, 3> target, double fov_deg) {
+                return Camera::look_at({eye[0], eye[1], eye[2]}, {target[0], target[1], target[2]},
+                                       fov_deg * 0.017453292519943295);
+            },
+            py::arg("eye"), py::arg("target"), py::arg("fov_deg") = 57.0)
+        .def_property_readonly(
+            "position",
+            [](const Camera& c) { return py::make_tuple(c.position_m.x, c.position_m.y, c.position_m.z); })
         .def_readonly("yaw_rad", &Camera::yaw_rad)
         .def_readonly("pitch_rad", &Camera::pitch_rad);
     py::class_<Project> c(module, "Project");
     bind_edits(c);
     bind_queries(c);
     c.def("default_camera", [](Project& p) { return p.session().default_camera(); });
-    c.def("step", &step, "Renders n frames without waiting for the picture to settle.", py::arg("camera") = py::none(), py::arg("n") = 1,
-          py::arg("size") = std::pair(960, 540), py::arg("render_scale") = 1.0);
-    c.def("render", &render, "Renders until the picture rests; uint8 (height, width, 4), sRGB-encoded.", py::arg("camera") = py::none(),
-          py::arg("size") = std::pair(960, 540), py::arg("reference") = false, py::arg("supersample") = 1, py::arg("debug") = "none",
-          py::arg("render_scale") = 1.0, py::arg("max_frames") = 600);
+    c.def("step", &step, "Renders n frames without waiting for the picture to settle.",
+          py::arg("camera") = py::none(), py::arg("n") = 1, py::arg("size") = std::pair(960, 540),
+          py::arg("render_scale") = 1.0);
+    c.def("render", &render, "Renders until the picture rests; uint8 (height, width, 4), sRGB-encoded.",
+          py::arg("camera") = py::none(), py::arg("size") = std::pair(960, 540), py::arg("reference") = false,
+          py::arg("supersample") = 1, py::arg("debug") = "none", py::arg("render_scale") = 1.0,
+          py::arg("max_frames") = 600);
     c.def("close", &Project::close, "Closes the project; what was applied is on disk already.");
     c.def_property_readonly("closed", &Project::closed);
-    c.def("__enter__", [](Project& p) -> Project& { return p; }, py::return_value_policy::reference);
+    c.def(
+        "__enter__", [](Project& p) -> Project& { return p; }, py::return_value_policy::reference);
     c.def("__exit__", [](Project& p, const py::args&) { p.close(); });
 }
 
-} // namespace loam::python
+}  // namespace loam::python

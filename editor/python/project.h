@@ -10,10 +10,10 @@ namespace loam::python {
 
 class Project {
   public:
-    Project(const std::string& path, const std::string& device, bool read_only, bool validation, const std::string& quality,
-            const std::string& format);
+    Project(const std::string& path, const std::string& device, bool read_only, bool validation,
+            const std::string& quality, const std::string& format);
 
-    [[nodiscard]] Session& session(); // raises once closed
+    [[nodiscard]] Session& session();  // raises once closed
     void close() { session_.reset(); }
     [[nodiscard]] bool closed() const { return session_ == nullptr; }
     py::object apply(const py::handle& command);
@@ -25,4 +25,4 @@ class Project {
 
 void bind_project(py::module_& module);
 
-} // namespace loam::python
+}  // namespace loam::python
