@@ -73,7 +73,8 @@ LayerTextures layer_dirt(uint32_t seed, int size) {
                                    .gloss = 0.2f,
                                    .taper = 0.5f});
     }
-    return finished(canvas, {.relief = 1, .cavity = 0.6f, .mean_albedo = {0.150f, 0.108f, 0.070f}});
+    return finished(
+        canvas, {.relief = 1, .cavity = 0.6f, .mean_albedo = {0.150f, 0.108f, 0.070f}, .contrast = 1.25f});
 }
 
 LayerTextures layer_scree(uint32_t seed, int size) {
@@ -158,8 +159,11 @@ LayerTextures layer_rock(uint32_t seed, int size) {
             colour * std::max(0.12f, (1 + tone + 0.22f * pits + 0.10f * bedding + 0.16f * grain) *
                                          (1 - 0.35f * crack))};
     });
-    return finished(
-        canvas, {.relief = 0.8f, .cavity = 0.55f, .flatten = 0.35f, .mean_albedo = {0.245f, 0.236f, 0.218f}});
+    return finished(canvas, {.relief = 0.8f,
+                             .cavity = 0.55f,
+                             .flatten = 0.35f,
+                             .mean_albedo = {0.245f, 0.236f, 0.218f},
+                             .contrast = 1.6f});
 }
 
 }  // namespace loam::recipe
