@@ -45,16 +45,19 @@ void Report::message(const std::string& text) {
     print({{"event", "message"}, {"text", text}});
 }
 
-void Report::motion_ends(float scale) {
+void Report::motion_ends(float scale, std::span<const gpu::PassTime> passes) {
     if (motion_ms_.empty()) return;
     std::sort(motion_ms_.begin(), motion_ms_.end());
     const size_t count = motion_ms_.size();
+    Json pass_ms = Json::object();
+    for (const gpu::PassTime& pass : passes) pass_ms[std::string(pass.name)] = rounded(pass.gpu_ms);
     if (enabled_)
         print({{"event", "motion"},
                {"frames", count},
                {"median_ms", rounded(motion_ms_[count / 2])},
                {"p95_ms", rounded(motion_ms_[count * 95 / 100])},
-               {"scale", rounded(scale)}});
+               {"scale", rounded(scale)},
+               {"passes", pass_ms}});
     motion_ms_.clear();
 }
 

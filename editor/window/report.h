@@ -4,16 +4,18 @@
 //   {"event":"viewport","rect":[x,y,w,h],"window":[w,h]}  after every change
 //   {"event":"command","command":{…}}                 committed
 //   {"event":"message","text":…}                      of the status line
-//   {"event":"motion","frames":…,"median_ms":…,"p95_ms":…,"scale":…}  when what moved came to rest
+//   {"event":"motion","frames":…,"median_ms":…,"p95_ms":…,"scale":…,"passes":{…}}  when what moved came to rest
 //   {"event":"idle","redraws":…,"scene_frames":…}     nothing will be drawn until something happens
 //   {"event":"closed","redraws":…,"validation_messages":…}
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "runtime/document/command.h"
+#include "runtime/gpu/commands.h"
 #include "ui/geometry.h"
 
 namespace loam::window {
@@ -27,7 +29,8 @@ class Report {
     void command(const Command& command);
     void message(const std::string& text);
     void frame_in_motion(double ms) { motion_ms_.push_back(ms); }
-    void motion_ends(float scale);
+    // With the device's times of the newest frame's passes.
+    void motion_ends(float scale, std::span<const gpu::PassTime> passes);
     void idle(uint64_t redraws, uint64_t scene_frames);
     void closed(uint64_t redraws, uint32_t validation_messages);
 

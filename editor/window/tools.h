@@ -80,7 +80,7 @@ class ToolController {
     [[nodiscard]] std::optional<Ring> ring(const ToolInput& input) const;
 
     // Height that one dab of full strength moves: grows with the brush, so that a hill keeps its shape at any size.
-    [[nodiscard]] static double dab_height_m(const Brush& brush) { return brush.strength * brush.radius_m * 0.05; }
+    [[nodiscard]] static double dab_height_m(const Brush& brush) { return brush.strength * brush.radius_m * 0.1; }
     static constexpr double kSpacingShare = 0.25;   // of the radius, between dabs
     static constexpr double kHeldDabsPerSecond = 14;
     static constexpr double kLargestRadius_m = 2000, kSmallestRadius_m = 0.1;

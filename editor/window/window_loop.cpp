@@ -158,7 +158,7 @@ Status WindowLoop::draw(const ui::FrameOutput& out, double now_s) {
         app_.frame.render_scale = scene.settings.render_scale;
         app_.frame.pages_pending = renderer_.pending_pages();
         pacer_.drawn(renderer_.settled());
-        if (!drew_moving_) report_.motion_ends(scale_.scale());
+        if (!drew_moving_) report_.motion_ends(scale_.scale(), session_.ring()->pass_times());
     }
     if (!ready_ && pacer_.phase() != FramePacer::Phase::moving) {
         ready_ = true;

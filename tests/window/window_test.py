@@ -1,0 +1,209 @@
+"""The window, driven by a real mouse and keyboard on a display without a screen: what is painted is seen, saved, undone,
+there again after a restart; and a window that is left alone draws nothing."""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import time
+
+import pytest
+
+sys.path.insert(0, os.path.dirname(__file__))
+from desktop import Display, Window, missing_tools  # noqa: E402
+
+LOAM = os.environ.get("LOAM_EXECUTABLE", "loam")
+
+pytestmark = pytest.mark.skipif(bool(missing_tools()), reason=f"not installed: {', '.join(missing_tools())}")
+
+
+@pytest.fixture(scope="module")
+def display():
+    made = Display()
+    yield made
+    made.close()
+
+
+@pytest.fixture
+def project(tmp_path):
+    folder = tmp_path / "small"
+    subprocess.run([LOAM, "new", str(folder), "--recipe", "plain", "--size", "256", "--layer-size", "128"], check=True,
+                   stdout=subprocess.DEVNULL)
+    return folder
+
+
+@pytest.fixture
+def opened(display, project):
+    """Opens windows and sees that none is left behind."""
+    windows = []
+
+    def open_window(*arguments):
+        window = Window(display, LOAM, project, *arguments)
+        windows.append(window)
+        window.wait_for("ready")
+        window.settle()
+        return window
+
+    yield open_window
+    for window in windows:
+        if window.process.poll() is None:
+            window.process.kill()
+            window.process.wait()
+
+
+def place(window, share_x, share_y):
+    """A point of the viewport, by shares of its width and height."""
+    x, y, w, h = window.last("viewport")["rect"]
+    return int(x + w * share_x), int(y + h * share_y)
+
+
+def changed_share(before, after, center, half=12):
+    """Share of the pixels around a point that differ visibly."""
+    count = changed = 0
+    for y in range(center[1] - half, center[1] + half):
+        for x in range(center[0] - half, center[0] + half):
+            a, b = before.getpixel((x, y)), after.getpixel((x, y))
+            count += 1
+            changed += max(abs(i - j) for i, j in zip(a, b)) > 6
+    return changed / count
+
+
+def away(display, window):
+    """The cursor off the viewport, so that no brush outline is in the picture."""
+    display.xdotool("mousemove", 400, 10)
+    window.settle()
+
+
+def closed_cleanly(window, display):
+    assert window.close(display) == 0, "".join(window.errors)
+    assert window.last("closed")["validation_messages"] == 0, "".join(window.errors)
+
+
+def test_paint_crater_undo_save_close_reopen(display, project, opened, tmp_path):
+    record = tmp_path / "session.jsonl"
+    window = opened("--record", record)
+    away(display, window)
+    start = display.screenshot()
+    assert len(start.getcolors(1 << 24)) > 200, "the ground is not in the picture"
+
+    # Raise: a drag with the first tool.
+    display.key("1")
+    a, b = place(window, 0.42, 0.55), place(window, 0.58, 0.55)
+    display.drag(*a, *b, pause=0.08)
+    away(display, window)
+    raised = display.screenshot()
+    assert changed_share(start, raised, place(window, 0.5, 0.55)) > 0.5
+
+    # Paint with another layer than the ground has.
+    display.key("5", "period", "period", "period", "period")
+    a, b = place(window, 0.40, 0.70), place(window, 0.60, 0.70)
+    display.drag(*a, *b)
+    away(display, window)
+    painted = display.screenshot()
+    assert changed_share(raised, painted, place(window, 0.5, 0.70)) > 0.5
+
+    # A crater by a click, and back with Ctrl+Z.
+    display.key("6")
+    spot = place(window, 0.5, 0.85)
+    display.click(*spot)
+    away(display, window)
+    cratered = display.screenshot()
+    assert changed_share(painted, cratered, spot) > 0.3
+    display.key("ctrl+z")
+    window.settle()
+    undone = display.screenshot()
+    assert changed_share(painted, undone, spot) < 0.02
+    display.key("ctrl+shift+z")
+    window.settle()
+    display.key("ctrl+s")
+    window.settle()
+    # Where a window opens depends on the ground, which has changed: the view that the next one will have.
+    display.key("Home")
+    away(display, window)
+    saved = display.screenshot()
+
+    kinds = [c["cmd"] for c in window.commands()]
+    assert {"sculpt", "paint", "crater", "undo", "redo"} <= set(kinds)
+    closed_cleanly(window, display)
+    recorded = [json.loads(line)["cmd"] for line in record.read_text().splitlines()]
+    assert recorded == kinds, "the recording differs from what was done"
+
+    # Everything is there again, and looks the same.
+    again = opened()
+    away(display, again)
+    reopened = display.screenshot()
+    for share in ((0.5, 0.55), (0.5, 0.70), (0.5, 0.85)):
+        assert changed_share(saved, reopened, place(again, *share), half=30) < 0.01
+    closed_cleanly(again, display)
+    assert subprocess.run([LOAM, "verify", str(project)], capture_output=True).returncode == 0
+
+
+def test_an_idle_window_draws_nothing(display, opened):
+    window = opened()
+    away(display, window)
+    before, cpu, count = window.last("idle"), window.cpu_s(), len(window.events)
+    time.sleep(4)
+    while window._take(0.1):
+        pass
+    assert window.events[count:] == []
+    assert window.last("idle") == before
+    assert window.cpu_s() - cpu < 0.15, "an idle window uses the processor"
+    closed_cleanly(window, display)
+
+
+def test_hovering_moves_the_outline_without_a_new_picture(display, opened):
+    window = opened()
+    away(display, window)
+    before = window.last("idle")
+    plain = display.screenshot()
+    spot = place(window, 0.5, 0.6)
+    display.xdotool("mousemove", *spot)
+    window.settle()
+    after = window.last("idle")
+    assert after["scene_frames"] == before["scene_frames"]
+    assert after["redraws"] > before["redraws"]
+    assert changed_share(plain, display.screenshot(), spot, half=60) > 0.005, "no outline"
+    closed_cleanly(window, display)
+
+
+def test_resize_and_cameras(display, opened):
+    window = opened()
+    away(display, window)
+    old = window.last("viewport")
+    display.xdotool("search", "--name", "Loam", "windowsize", 1000, 700)
+    window.settle()
+    new = window.last("viewport")
+    assert new["window"] == [1000, 700] and new["rect"][2] < old["rect"][2]
+
+    still = display.screenshot()
+    at = place(window, 0.5, 0.6)
+    # Orbit: Alt and the left button. Zoom: the wheel. Fly: right button and W.
+    display.xdotool("keydown", "alt")
+    display.drag(*at, at[0] + 120, at[1] + 20)
+    display.xdotool("keyup", "alt")
+    away(display, window)
+    orbited = display.screenshot()
+    assert changed_share(still, orbited, at, half=60) > 0.05
+    display.xdotool("mousemove", *at)
+    for _ in range(4):
+        display.xdotool("click", 4)
+        time.sleep(0.05)
+    away(display, window)
+    zoomed = display.screenshot()
+    assert changed_share(orbited, zoomed, at, half=60) > 0.05
+    display.xdotool("mousemove", *at, "mousedown", 3, "keydown", "w")
+    time.sleep(1)
+    display.xdotool("keyup", "w", "mouseup", 3)
+    away(display, window)
+    assert changed_share(zoomed, display.screenshot(), at, half=60) > 0.05
+    assert window.commands() == [], "moving the camera must not edit"
+    motion = window.last("motion")
+    assert motion and motion["frames"] > 3
+    closed_cleanly(window, display)
+
+
+def test_a_missing_project_is_one_sentence_and_a_failure(display, tmp_path):
+    run = subprocess.run([LOAM, "edit", str(tmp_path / "nowhere")], env=display.environment, capture_output=True, text=True)
+    assert run.returncode != 0
+    lines = [line for line in run.stderr.splitlines() if line]
+    assert len(lines) == 1 and "nowhere" in lines[0]
