@@ -29,9 +29,11 @@ def test_killed_at_random_moments(plain_template, tmp_path):
         shutil.rmtree(project, ignore_errors=True)
         shutil.copytree(plain_template, project)
         process = subprocess.Popen([program, "replay", str(project), str(script), "--commit-log"], stdout=subprocess.PIPE, text=True)
-        time.sleep(rng.uniform(0.02, 0.6))
+        # Most are killed while commands run, some while the project is being opened, however busy the machine is.
+        said = [] if kill % 5 == 0 else [process.stdout.readline()]
+        time.sleep(rng.uniform(0.0, 0.2))
         process.send_signal(signal.SIGKILL)
-        said = process.stdout.read().splitlines()
+        said = [line.strip() for line in said + process.stdout.read().splitlines(keepends=True) if line.endswith("\n")]
         process.wait()
         complete = [line for line in said if line.startswith("committed ")]
         committed = int(complete[-1].split()[1]) if complete else 0
@@ -40,4 +42,4 @@ def test_killed_at_random_moments(plain_template, tmp_path):
             done = len(p.history(100000))
         assert committed <= done <= committed + 1, (kill, committed, done)
         assert loam.verify(str(project)) == []
-    assert interrupted > KILLS // 3, "most kills came before the first command: the delays need tuning"
+    assert interrupted >= KILLS * 4 // 5
