@@ -22,10 +22,10 @@ constexpr std::string_view kHelp[][2] = {
 };
 
 void help_dialog(ui::Ui& ui) {
-    auto dialog = ui::dialog(ui, "Keyboard and mouse", 520);
+    auto dialog = ui::dialog(ui, "Keyboard and mouse", 680);
     if (!dialog) return;
     for (const auto& [keys, what] : kHelp) {
-        auto row = ui.row({ui::flex(0.45f), ui::flex(0.55f)}, 20);
+        auto row = ui.row({ui::flex(0.4f), ui::flex(0.6f)}, 20);
         ui::label(ui, keys);
         ui::label(ui, what, ui::Tone::dim);
     }

@@ -31,6 +31,23 @@ void edit_menu(App& app, ui::Ui& ui) {
     action_item(app, ui, "Redo", "redo", ui::Icon::redo, app.session.document().can_redo());
 }
 
+// Of the picture while something moves; at rest it is always whole.
+void resolution_items(App& app, ui::Ui& ui) {
+    if (ui::menu_item(ui, {.label = "Adapt the resolution while moving", .checked = app.view.adaptive})) {
+        app.view.adaptive = true;
+        app.scene_changed();
+    }
+    for (const int percent : {50, 75, 100}) {
+        const std::string label = fmt::format("{} % while moving", percent);
+        const double scale = percent / 100.0;
+        const bool chosen = !app.view.adaptive && app.view.fixed_scale == scale;
+        if (!ui::menu_item(ui, {.label = label, .checked = chosen})) continue;
+        app.view.adaptive = false;
+        app.view.fixed_scale = scale;
+        app.scene_changed();
+    }
+}
+
 void view_menu(App& app, ui::Ui& ui) {
     action_item(app, ui, "Whole map", "home");
     action_item(app, ui, "Frame the spot under the cursor", "frame");
@@ -38,10 +55,8 @@ void view_menu(App& app, ui::Ui& ui) {
     ui::menu_separator(ui);
     action_item(app, ui, "Direct shading", "direct shading", ui::Icon::none, true,
                 app.view.shading == Shading::direct);
-    if (ui::menu_item(ui, {.label = "Adapt the resolution while moving", .checked = app.view.adaptive})) {
-        app.view.adaptive = !app.view.adaptive;
-        app.scene_changed();
-    }
+    resolution_items(app, ui);
+    ui::menu_separator(ui);
     if (ui::menu_item(ui, {.label = "Brush outline", .checked = app.view.show_ring}))
         app.view.show_ring = !app.view.show_ring;
     ui::menu_separator(ui);
