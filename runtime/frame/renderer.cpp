@@ -11,6 +11,7 @@
 #include "runtime/maps/index_map.h"
 #include "runtime/scene/shadow_cascades.h"
 #include "runtime/scene/sun_sky.h"
+#include "runtime/texture/decals.h"
 #include "runtime/texture/layer_set.h"
 #include "shaders/frame/resolve_io.h"
 
@@ -33,8 +34,8 @@ struct ProfileDefaults {
 };
 
 ProfileDefaults profile_defaults(gpu::Profile profile) {
-    if (profile == gpu::Profile::software) return {PageFormat::rgba8, 2, 8, 4, 1.3, 1024, 1};
-    return {PageFormat::bc1x3, 12, 32, 16, 2.5, 2048, 4};
+    if (profile == gpu::Profile::software) return {PageFormat::rgba8, 2, 12, 4, 2.4, 1024, 1};
+    return {PageFormat::bc1x3, 12, 48, 16, 4.0, 2048, 4};
 }
 
 int pages_per_side(Quality quality) {
@@ -53,10 +54,16 @@ int pages_per_side(Quality quality) {
     return 16;
 }
 
+// Outside the frustum the ground only casts shadows: tuned so that half the cache serves what is seen.
+constexpr double kHiddenShare = 0.4;
+
 constexpr uint32_t kMaterialSlot = 5;  // VT_FIRST_SLOT and DIRECT_FIRST_SLOT of the resolve shaders
 
-enum class ResolveKind { fast, fine, debug, direct };
-constexpr size_t kResolveKinds = 4;
+enum class ResolveKind { fast, fine, debug, direct, direct_decals, floor, floor_fine };
+constexpr size_t kResolveKinds = 7;
+
+// The frame draws sky and ground; benches draw the ground alone, or its floor (resolve_floor.frag).
+enum class ResolvePart { all, ground, floor };
 
 // Jitter within a pixel is not another view.
 bool same_view(const Camera& a, const Camera& b) {
@@ -94,6 +101,9 @@ struct Renderer::Impl {
     PatchSet patches;
     Camera last_camera;
     uint32_t cascades_drawn = 0;
+    gpu::UploadSlice decals;  // of direct shading, this frame's
+    bool has_decals = false;
+    shared::FrameUniforms last_uniforms{};  // for resolve_again
 
     Status make_pipelines();
     Result<gpu::Pipeline*> resolve_pipeline(ResolveKind kind);
@@ -101,12 +111,13 @@ struct Renderer::Impl {
     [[nodiscard]] shared::FrameUniforms uniforms(const Camera& camera, glm::uvec2 size,
                                                  const FrameSettings& settings) const;
     void request_direct_pages(double pixels_per_radian, double footprint_bias);
+    void upload_direct_decals(gpu::FrameRing& ring, double pixels_per_radian, double footprint_bias);
     void use_material(gpu::Commands& commands, bool direct);
     [[nodiscard]] std::vector<gpu::Bound> cached_material() const;
     [[nodiscard]] std::vector<gpu::Bound> direct_material() const;
     void prepass(gpu::Commands& commands, glm::uvec2 size, const shared::FrameUniforms& u);
     Status light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& uniform_slice,
-                 const Camera& camera, const FrameSettings& settings);
+                 const Camera& camera, const FrameSettings& settings, ResolvePart part);
 };
 
 Renderer::Renderer() = default;
@@ -189,27 +200,32 @@ Status Renderer::Impl::make_pipelines() {
 Result<gpu::Pipeline*> Renderer::Impl::resolve_pipeline(ResolveKind kind) {
     gpu::Pipeline& pipeline = resolve[size_t(kind)];
     if (pipeline) return &pipeline;
-    const bool direct = kind == ResolveKind::direct;
+    const bool direct = kind == ResolveKind::direct || kind == ResolveKind::direct_decals;
+    const bool floor = kind == ResolveKind::floor || kind == ResolveKind::floor_fine;
     gpu::GraphicsDesc d{
         .name = direct ? "resolve direct" : "resolve",
         .vertex_shader = "frame/fullscreen.vert",
-        .fragment_shader = direct ? "frame/resolve_direct.frag" : "frame/resolve.frag",
+        .fragment_shader = direct  ? "frame/resolve_direct.frag"
+                           : floor ? "frame/resolve_floor.frag"
+                                   : "frame/resolve.frag",
         .push_bytes = sizeof(shared::ResolvePush),
-        // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal.
-        .constants = {{0, kind == ResolveKind::fast ? 0u : 1u},
+        // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal, 22: decals.
+        .constants = {{0, kind == ResolveKind::fast || kind == ResolveKind::floor ? 0u : 1u},
                       {1, kind == ResolveKind::debug ? 1u : 0u},
                       {20, kind == ResolveKind::fast ? 0u : 1u},
-                      {21, layers->has_metal ? 1u : 0u}},
+                      {21, layers->has_metal ? 1u : 0u},
+                      {22, kind == ResolveKind::direct_decals ? 1u : 0u}},
         .color_formats = {kPictureFormat},
         .depth_format = device.caps().depth_stencil,
         .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
     d.bindings = {gpu::storage_buffer(0), gpu::sampled_image(1), gpu::sampled_image(2), gpu::sampled_image(3),
                   gpu::sampled_image(4)};
     // Then the material's: shaders/texture/direct.glsl or vt_sample.glsl, from slot 5.
-    const uint32_t buffers = direct ? 3 : 2, images = direct ? 5 : 4;
+    const uint32_t buffers = direct ? 3 : floor ? 0 : 2, images = direct ? 5 : floor ? 3 : 4;
     for (uint32_t i = 0; i < buffers + images; ++i)
         d.bindings.push_back(i < buffers ? gpu::storage_buffer(kMaterialSlot + i)
                                          : gpu::sampled_image(kMaterialSlot + i));
+    if (direct) d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images));
     auto made = gpu::Pipeline::create(device, d);
     if (!made) return made.error();
     pipeline = std::move(*made);
@@ -271,6 +287,25 @@ void Renderer::Impl::request_direct_pages(double pixels_per_radian, double footp
     }
 }
 
+void Renderer::Impl::upload_direct_decals(gpu::FrameRing& ring, double pixels_per_radian,
+                                          double footprint_bias) {
+    std::vector<WorldRect> ground;
+    for (int i = 0; i < patches.visible_count; ++i) {
+        const shared::PatchInstance& patch = patches.patches[size_t(i)];
+        const glm::dvec2 corner = glm::dvec2(patches.origin_step + patch.origin) * patches.step_m;
+        const double side = patch.stride * patches.step_m * kPatchQuads;
+        ground.push_back({corner.x, corner.y, corner.x + side, corner.y + side});
+    }
+    const std::vector<shared::DirectDecal> found =
+        direct_decals(document, {.camera_m = {last_camera.position_m.x, last_camera.position_m.y},
+                                 .pixels_per_radian = pixels_per_radian,
+                                 .footprint_bias = footprint_bias,
+                                 .ground = ground});
+    has_decals = !found.empty();
+    decals = ring.upload(std::max<size_t>(found.size(), 1) * sizeof(shared::DirectDecal));
+    std::copy(found.begin(), found.end(), decals.as<shared::DirectDecal>());
+}
+
 void Renderer::Impl::use_material(gpu::Commands& commands, bool direct) {
     if (direct)
         commands.use({{indices->indices(), Access::fragment_sampled},
@@ -309,13 +344,17 @@ std::vector<gpu::Bound> Renderer::Impl::direct_material() const {
             {s + 4, indices->tints().view(), texture->nearest_sampler()},
             {s + 5, layers->albedo_reveal.view(), layers->sampler},
             {s + 6, layers->normal_gloss_occlusion.view(), layers->sampler},
-            {s + 7, layers->metalness.view(), layers->sampler}};
+            {s + 7, layers->metalness.view(), layers->sampler},
+            {s + 8, *decals.buffer, decals.offset, decals.size_bytes}};
 }
 
 Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& slice,
-                             const Camera& camera, const FrameSettings& settings) {
+                             const Camera& camera, const FrameSettings& settings, ResolvePart part) {
+    const bool floor = part == ResolvePart::floor;
     const bool direct = settings.shading == Shading::direct;
-    const ResolveKind kind = direct                              ? ResolveKind::direct
+    const ResolveKind kind = floor ? settings.fine_filter ? ResolveKind::floor_fine : ResolveKind::floor
+                             : direct && has_decals                ? ResolveKind::direct_decals
+                             : direct                            ? ResolveKind::direct
                              : settings.debug != DebugView::none ? ResolveKind::debug
                              : settings.fine_filter              ? ResolveKind::fine
                                                                  : ResolveKind::fast;
@@ -334,8 +373,10 @@ Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu
     commands.set_viewport(0, 0, float(size.x), float(size.y));
 
     const gpu::Bound frame_bound(0, *slice.buffer, slice.offset, slice.size_bytes);
-    commands.bind(sky, {frame_bound});
-    commands.draw(3);
+    if (part == ResolvePart::all) {
+        commands.bind(sky, {frame_bound});
+        commands.draw(3);
+    }
 
     std::vector<gpu::Bound> bound = {
         frame_bound,
@@ -344,7 +385,11 @@ Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu
         {3, targets.occlusion.view(), point},
         {4, shadows->atlas().view(), shadows->sampler()},
     };
-    const std::vector<gpu::Bound> material = direct ? direct_material() : cached_material();
+    std::vector<gpu::Bound> material = direct ? direct_material() : cached_material();
+    if (floor)
+        material = {{kMaterialSlot, texture->atlas(0).view(), texture->sampler()},
+                    {kMaterialSlot + 1, texture->atlas(1).view(), texture->sampler()},
+                    {kMaterialSlot + 2, texture->atlas(2).view(), texture->sampler()}};
     bound.insert(bound.end(), material.begin(), material.end());
     commands.bind(**pipeline, bound);
     const glm::dvec2 ring = settings.ring_center_m - glm::dvec2(camera.position_m);
@@ -386,14 +431,17 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     r.patches =
         select_patches(*r.heights, {.camera_m = camera.position_m,
                                     .clip_from_rel = camera.clip_from_rel(size.x, size.y, settings.jitter_px),
-                                    .split_distance = split});
+                                    .split_distance = split,
+                                    .hidden_share = kHiddenShare});
     const TextureView view{.camera_m = camera.position_m,
                            .pixels_per_radian = size.y * 0.5 / std::tan(camera.fov_y_rad * 0.5),
                            .frame = r.frame,
                            .budget_pages = settings.page_budget};
     r.texture->request_inputs(view);
-    if (settings.shading == Shading::direct)
+    if (settings.shading == Shading::direct) {
         r.request_direct_pages(view.pixels_per_radian, settings.footprint_bias);
+        r.upload_direct_decals(ring, view.pixels_per_radian, settings.footprint_bias);
+    }
     LOAM_TRY(r.heights->update(ring, commands, r.frame, r.defaults.height_pages));
     LOAM_TRY(r.indices->update(ring, commands, r.frame, r.defaults.index_pages));
     LOAM_TRY(r.texture->update(ring, commands, view));
@@ -404,7 +452,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
         LOAM_TRY(r.shadows->update(commands, *r.terrain, r.patches, *r.heights, camera.position_m,
                                    sun_direction({.azimuth_rad = r.document.settings().sun_azimuth_rad,
                                                   .elevation_rad = r.document.settings().sun_elevation_rad}),
-                                   r.defaults.shadow_budget, u));
+                                   r.defaults.shadow_budget, settings.fine_filter, u));
 
     const gpu::UploadSlice slice = ring.upload(sizeof(u));
     *slice.as<shared::FrameUniforms>() = u;
@@ -416,7 +464,8 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
         LOAM_TRY(r.texture->record_feedback(ring, commands, r.targets.depth, r.targets.gbuffer, *slice.buffer,
                                             slice.offset));
     // Sky, then the terrain's pixels from the virtual texture.
-    LOAM_TRY(r.light(commands, size, slice, camera, settings));
+    LOAM_TRY(r.light(commands, size, slice, camera, settings, ResolvePart::all));
+    r.last_uniforms = u;
     commands.use({{r.targets.picture, Access::fragment_sampled}});
 
     const bool asked = settings.shading == Shading::direct ||
@@ -425,6 +474,15 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
                 (!r.desc.shadows || r.shadows->settled());
     r.changed = false;
     return {};
+}
+
+Status Renderer::resolve_again(gpu::FrameRing& ring, gpu::Commands& commands, const FrameSettings& settings,
+                               ResolveProbe probe) {
+    Impl& r = *impl_;
+    const gpu::UploadSlice slice = ring.upload(sizeof(r.last_uniforms));
+    *slice.as<shared::FrameUniforms>() = r.last_uniforms;
+    return r.light(commands, r.picture_size, slice, r.last_camera, settings,
+                   probe == ResolveProbe::floor ? ResolvePart::floor : ResolvePart::ground);
 }
 
 gpu::Image& Renderer::picture() {

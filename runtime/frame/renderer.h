@@ -39,7 +39,8 @@ enum class DebugView { none, mips, sectors, normals, occlusion, indirection, sha
 struct RendererDesc {
     Quality quality = Quality::low;
     std::optional<PageFormat> page_format;  // default by device profile
-    int height_slots = 144, index_slots = 144;
+    // The talk's 144 height pages serve its patches; here a page's normals are seen pixel by pixel, which wants smaller pages.
+    int height_slots = 320, index_slots = 144;
     int page_budget = 0;  // whole texture pages a frame; 0: by profile
     bool shadows = true;
     double patch_split_distance = 0;  // 0: by profile
@@ -107,6 +108,11 @@ class Renderer {
 
     [[nodiscard]] FrameStatistics statistics() const;
     [[nodiscard]] const LayerSet& layers() const;
+    // Benches: the newest frame's resolve again, over its depth and g-buffer, without sky; or the floor that it is
+    // measured against (shaders/frame/resolve_floor.frag).
+    enum class ResolveProbe { resolve, floor };
+    Status resolve_again(gpu::FrameRing& ring, gpu::Commands& commands, const FrameSettings& settings,
+                         ResolveProbe probe);
     // Tests: resident pages of all maps that differ from their composition from nothing.
     Result<uint32_t> count_stale_pages(gpu::FrameRing& ring);
 

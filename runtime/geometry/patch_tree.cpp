@@ -15,7 +15,7 @@ namespace loam {
 
 namespace {
 
-constexpr int kMaxDelta = 4;  // log2(kPatchQuads): a patch's edge is at least one whole quad of its neighbour
+constexpr int kMaxDelta = 3;  // log2(kPatchQuads): a patch's edge is at least one whole quad of its neighbour
 static_assert(1 << kMaxDelta == kPatchQuads);
 
 using PageSet = std::unordered_set<MapPage, MapPageHash>;
@@ -109,8 +109,10 @@ class Selection {
         const PatchBox box = patch_box(heights_, page, view_.camera_m);
         const double side = map_.page_size_m(page.level);
         const double distance = distance_to_origin(box);
+        // What the camera cannot see only casts shadows into the picture and waits for a turn of the head.
+        const double reach = view_.split_distance * (frustum_.meets(box) ? 1.0 : view_.hidden_share);
         const bool near =
-            distance < view_.split_distance * side || (view_.max_level > 0 && page.level > view_.max_level);
+            distance < reach * side || (view_.max_level > 0 && page.level > view_.max_level);
         if (page.level <= view_.min_level || page.level == 0 || !near) {
             leaves_.push_back(page);
             return;

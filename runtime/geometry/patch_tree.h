@@ -20,6 +20,7 @@ struct PatchView {
     glm::dvec3 camera_m{0};
     glm::dmat4 clip_from_rel{1};  // camera-relative world to clip, reversed Z
     double split_distance = 1.5;  // a node of side s is split when nearer than split_distance * s
+    double hidden_share = 1.0;   // of split_distance for nodes outside the frustum
     // min_level: do not go finer than this. max_level: do not stay coarser than this where pages allow; 0: no
     // such limit.
     int max_level = 0, min_level = 0;

@@ -6,7 +6,8 @@ namespace loam {
 
 namespace {
 
-// Half sizes in metres. The finest gives 8 cm texels at 1024, enough for a footprint's rim; each next is four times wider.
+// Half sizes in metres. The finest gives 8 cm texels at 1024, enough for a footprint's rim; each next is four
+// times wider.
 constexpr std::array<double, kCascadeCount> kHalf_m = {40.0, 160.0, 640.0, 4096.0};
 // The camera may wander this share of a cascade's half size before the cascade is drawn again.
 constexpr double kWander = 0.3;
@@ -14,17 +15,17 @@ constexpr double kWander = 0.3;
 constexpr double kDepthRange_m = 65536.0;
 constexpr float kNormalBias_texels = 1.6f;
 
-} // namespace
+}  // namespace
 
 Result<ShadowCascades> ShadowCascades::create(gpu::Device& device, uint32_t cascade_texels) {
     ShadowCascades shadows;
     shadows.texels_ = cascade_texels;
-    auto atlas = gpu::Image::create(device, {.name = "shadow atlas",
-                                             .format = VK_FORMAT_D32_SFLOAT,
-                                             .width = cascade_texels * 2,
-                                             .height = cascade_texels * 2,
-                                             .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT |
-                                                      VK_IMAGE_USAGE_SAMPLED_BIT});
+    auto atlas = gpu::Image::create(
+        device, {.name = "shadow atlas",
+                 .format = VK_FORMAT_D32_SFLOAT,
+                 .width = cascade_texels * 2,
+                 .height = cascade_texels * 2,
+                 .usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT | VK_IMAGE_USAGE_SAMPLED_BIT});
     if (!atlas) return atlas.error();
     shadows.atlas_ = std::move(*atlas);
     auto sampler = gpu::Sampler::create(device, {.compare_greater = true});
@@ -37,7 +38,8 @@ Result<ShadowCascades> ShadowCascades::create(gpu::Device& device, uint32_t casc
 void ShadowCascades::on_dirt(std::span<const WorldRect> rects) {
     for (auto& cascade : cascades_) {
         for (const WorldRect& rect : rects) {
-            // The rectangle's disc in light space, for any height: compare across the light's x axis only, which is level.
+            // The rectangle's disc in light space, for any height: compare across the light's x axis only,
+            // which is level.
             const glm::dvec2 c = rect.center();
             const double radius = std::hypot(rect.width(), rect.height()) * 0.5;
             const double across = axes_.x.x * c.x + axes_.x.y * c.y;
@@ -46,9 +48,9 @@ void ShadowCascades::on_dirt(std::span<const WorldRect> rects) {
     }
 }
 
-bool ShadowCascades::is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_t cut_hash) const {
+bool ShadowCascades::is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_t cut_hash, bool refine) const {
     const glm::dvec2 moved = glm::abs(eye_m - c.center_m);
-    return !c.valid || c.dirty || c.cut_hash != cut_hash || std::max(moved.x, moved.y) > c.half_m * kWander;
+    return !c.valid || c.dirty || (refine && c.cut_hash != cut_hash) || std::max(moved.x, moved.y) > c.half_m * kWander;
 }
 
 Status ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
@@ -63,9 +65,9 @@ Status ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const
     c.cut_hash = patches.cut_hash;
 
     const glm::dvec2 center = c.center_m - eye;
-    const glm::dmat4 clip_from_rel = glm::transpose(glm::dmat4(
-        glm::dvec4(axes_.x, -center.x) / c.half_m, glm::dvec4(axes_.y, -center.y) / c.half_m,
-        glm::dvec4(axes_.z / kDepthRange_m, 0.5), glm::dvec4(0, 0, 0, 1)));
+    const glm::dmat4 clip_from_rel = glm::transpose(
+        glm::dmat4(glm::dvec4(axes_.x, -center.x) / c.half_m, glm::dvec4(axes_.y, -center.y) / c.half_m,
+                   glm::dvec4(axes_.z / kDepthRange_m, 0.5), glm::dvec4(0, 0, 0, 1)));
 
     const int side = int(texels_), x = (index & 1) * side, y = (index >> 1) * side;
     commands.begin_rendering({atlas_.width(), atlas_.height()}, {},
@@ -81,7 +83,7 @@ Status ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const
 
 Status ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
                               const HeightMap& heights, const glm::dvec3& camera_m, const glm::dvec3& to_sun,
-                              int budget, shared::FrameUniforms& uniforms) {
+                              int budget, bool refine, shared::FrameUniforms& uniforms) {
     if (glm::dot(to_sun, axes_.z) < 1.0 - 1e-12) {
         axes_.z = to_sun;
         // The light's x axis is level, so that height moves a point along y and z only.
@@ -97,7 +99,7 @@ Status ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, con
     settled_ = true;
     bool opened = false;
     for (int i = 0; i < kCascadeCount; ++i) {
-        if (!is_stale(cascades_[size_t(i)], eye, patches.cut_hash)) continue;
+        if (!is_stale(cascades_[size_t(i)], eye, patches.cut_hash, refine)) continue;
         if (int(drawn_) >= budget) {
             settled_ = false;
             continue;
@@ -124,4 +126,4 @@ Status ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, con
     return {};
 }
 
-} // namespace loam
+}  // namespace loam

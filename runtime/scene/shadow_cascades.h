@@ -1,7 +1,7 @@
-// The sun's shadow: four cascades around the camera in one depth atlas, each kept until the sun, the ground inside it or
-// the camera has moved, so that a steady view draws none.
-// The light looks along -z of its own axes; a cascade is a square of light space, snapped to its texels so that shadows do not
-// crawl. Depth grows towards the sun (reversed, like the picture's).
+// The sun's shadow: four cascades around the camera in one depth atlas, each kept until the sun, the ground
+// inside it or the camera has moved, so that a steady view draws none. The light looks along -z of its own
+// axes; a cascade is a square of light space, snapped to its texels so that shadows do not crawl. Depth grows
+// towards the sun (reversed, like the picture's).
 #pragma once
 
 #include <array>
@@ -22,30 +22,31 @@ class ShadowCascades {
     // Heights inside changed.
     void on_dirt(std::span<const WorldRect> rects);
     // Decides which cascades are stale, draws them (at most `budget`, nearest first) and fills the uniforms.
-    // `always`: draw whatever is stale, for still pictures.
-    Status update(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches, const HeightMap& heights,
-                  const glm::dvec3& camera_m, const glm::dvec3& to_sun, int budget, shared::FrameUniforms& uniforms);
+    // `refine`: also draw cascades again that show another cut of the ground than the picture; for still pictures.
+    Status update(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
+                  const HeightMap& heights, const glm::dvec3& camera_m, const glm::dvec3& to_sun, int budget,
+                  bool refine, shared::FrameUniforms& uniforms);
 
     [[nodiscard]] gpu::Image& atlas() { return atlas_; }
     [[nodiscard]] const gpu::Sampler& sampler() const { return sampler_; }
     [[nodiscard]] bool settled() const { return settled_; }
-    [[nodiscard]] uint32_t drawn() const { return drawn_; } // cascades drawn by the last update
+    [[nodiscard]] uint32_t drawn() const { return drawn_; }  // cascades drawn by the last update
 
   private:
     struct Cascade {
         bool valid = false;
         bool dirty = false;
-        glm::dvec2 center_m{0}; // light space of the world
-        double z_m = 0;         // light-space height of depth 0.5
+        glm::dvec2 center_m{0};  // light space of the world
+        double z_m = 0;          // light-space height of depth 0.5
         double half_m = 0;
         uint64_t cut_hash = 0;
     };
     struct Axes {
         glm::dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
     };
-    [[nodiscard]] bool is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_t cut_hash) const;
-    Status draw(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches, const HeightMap& heights,
-                const glm::dvec3& camera_m, int index);
+    [[nodiscard]] bool is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_t cut_hash, bool refine) const;
+    Status draw(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
+                const HeightMap& heights, const glm::dvec3& camera_m, int index);
 
     gpu::Image atlas_;
     gpu::Sampler sampler_;
@@ -56,4 +57,4 @@ class ShadowCascades {
     uint32_t drawn_ = 0;
 };
 
-} // namespace loam
+}  // namespace loam

@@ -8,8 +8,8 @@
 namespace loam {
 
 struct SunSky {
-    double azimuth_rad = 3.9;   // clockwise from north
-    double elevation_rad = 0.6; // above the horizon
+    double azimuth_rad = 3.9;    // clockwise from north
+    double elevation_rad = 0.6;  // above the horizon
     double haze_per_km = 0.03;
 };
 
@@ -18,4 +18,4 @@ struct SunSky {
 // Fills the sun's, sky's and haze's members.
 void fill_sun_sky(const SunSky& sky, shared::FrameUniforms& uniforms);
 
-} // namespace loam
+}  // namespace loam

@@ -37,7 +37,7 @@ struct ProjectSettings {
     LayerRoles roles;
     double sun_azimuth_rad = 3.9;  // clockwise from north, where the sun stands
     double sun_elevation_rad = 0.6;
-    double haze_per_km = 0.03;  // extinction at sea level, 1/km
+    double haze_per_km = 0.045;  // extinction at sea level, 1/km
 
     [[nodiscard]] WorldRect bounds() const {
         return {0, 0, (height_samples_x - 1) * height_spacing_m, (height_samples_y - 1) * height_spacing_m};

@@ -9,8 +9,8 @@
 #include "shaders/base/shared.h"
 LOAM_BEGIN_SHARED
 
-#define kPatchQuads 16
-#define kPatchQuadTexels 4  // height samples a quad
+#define kPatchQuads 8
+#define kPatchQuadTexels 8  // height samples a quad
 #define kPatchBorder 2      // texels of a page before its first sample
 #define kPatchTexels 68     // texels a side of a page
 

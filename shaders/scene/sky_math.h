@@ -44,7 +44,7 @@ LOAM_INLINE vec3 sky_radiance(vec3 direction, vec3 to_sun) {
     // Sunlight is dimmed on its way to where it scatters, less than on its whole way down; light scattered more
     // than once adds a share that has no direction.
     vec3 lit = sun_transmittance(max(to_sun.z, 0.0f) * 0.7f + 0.12f);
-    vec3 many = vec3(0.022f, 0.028f, 0.036f) * (0.3f + max(to_sun.z, 0.0f));
+    vec3 many = vec3(0.034f, 0.041f, 0.050f) * (0.3f + max(to_sun.z, 0.0f));
     return along * (phase * lit + many);
 }
 
