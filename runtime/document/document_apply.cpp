@@ -69,7 +69,10 @@ Status Document::Impl::compute(const PaintCommand& command, Change& change) {
             if (settings.layers[i].name == *command.layer) layer = int(i) + 1;
         if (layer == 0) {
             std::string known;
-            for (const LayerEntry& entry : settings.layers) known += (known.empty() ? "" : ", ") + entry.name;
+            for (const LayerEntry& entry : settings.layers) {
+                if (!known.empty()) known += ", ";
+                known += entry.name;
+            }
             return error("unknown layer \"{}\" (known: {})", *command.layer, known.empty() ? "none" : known);
         }
         --layer;

@@ -79,7 +79,10 @@ class Fields {
         for (const auto& [key, value] : object_.items()) {
             if (known_.count(key) != 0) continue;
             std::string known;
-            for (const std::string& name : known_) known += (known.empty() ? "" : ", ") + name;
+            for (const std::string& name : known_) {
+                if (!known.empty()) known += ", ";
+                known += name;
+            }
             refuse("{}: unknown key \"{}\" (known: {})", place_, key, known);
         }
     }

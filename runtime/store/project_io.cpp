@@ -45,7 +45,10 @@ void read_table(const toml::table& table, const char* place, const Readers& read
         const auto reader = readers.find(std::string_view(key.str()));
         if (reader == readers.end()) {
             std::string known;
-            for (const auto& [name, unused] : readers) known += (known.empty() ? "" : ", ") + name;
+            for (const auto& [name, unused] : readers) {
+                if (!known.empty()) known += ", ";
+                known += name;
+            }
             throw Refused{fmt::format("unknown key \"{}\" in {} (known: {})", std::string_view(key.str()),
                                       place, known),
                           key.source().begin};
@@ -171,7 +174,7 @@ std::string toml_text(std::string_view text) {
     std::string out = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\')
-            out += std::string("\\") + c;
+            out.append(1, '\\').append(1, c);
         else if (uint8_t(c) < 0x20 || c == 0x7f)
             out += fmt::format("\\u{:04X}", uint8_t(c));
         else
