@@ -1,7 +1,9 @@
-// Which decals a page rectangle gets, as instances for the decal pass, in operator order.
+// Which decals a page rectangle gets, as instances for the decal pass, in operator order; and which decals
+// direct shading looks at.
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <glm/vec2.hpp>
@@ -31,6 +33,18 @@ struct DecalList {
 // scratch. The caller holds the document's ReadLock.
 void add_decals(const Document& document, const TextureLayout& layout, const PageId& page,
                 const TexelRect& rect, glm::ivec2 scratch_min, DecalList& list);
+
+struct DirectDecalView {
+    glm::dvec2 camera_m{0};
+    double pixels_per_radian = 500;
+    double footprint_bias = 0;          // log2, as direct shading's
+    std::span<const WorldRect> ground;  // together at least the ground in view
+};
+
+// The decals over the ground in view that are not too small to be seen, in operator order. Takes the
+// document's ReadLock.
+[[nodiscard]] std::vector<shared::DirectDecal> direct_decals(const Document& document,
+                                                             const DirectDecalView& view);
 
 // The texels of a page whose centres lie in a world rectangle, grown by one; not clipped.
 [[nodiscard]] TexelRect page_texels(const TextureLayout& layout, const PageId& page, const WorldRect& world);

@@ -17,5 +17,24 @@ struct DecalInstance {
     uint foot;          // footprint: 0 left, 1 right
 };
 
+// One decal in view, for shading without the cache (direct_decals.glsl).
+struct DirectDecal {
+    vec2 center_rel_m;  // camera-relative
+    float reach_m;      // nothing farther than this from the centre changes
+    float size_m;       // what fades when smaller than a texel: see decal_fade
+    vec4 shape;         // as DecalInstance's
+    uint seed;
+    uint foot;
+    uint kind;          // kDecalCrater or kDecalFootprint
+    uint unused;
+};
+
+#define kDecalCrater 0u
+#define kDecalFootprint 1u
+
+// Below half a texel a decal is gone, from one texel on it is whole: a function of the texel's size alone, so that
+// neighbouring pages of a level agree.
+LOAM_INLINE float decal_fade(float size_m, float texel_m) { return clamp(size_m / texel_m * 2.0f - 1.0f, 0.0f, 1.0f); }
+
 LOAM_END_SHARED
 #endif

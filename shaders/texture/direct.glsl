@@ -1,5 +1,5 @@
 // The material under any place, without the page cache: index map and layers per pixel. This is what the cached picture is
-// measured against. Decals are not part of it yet.
+// measured against. Decals come after it: direct_decals.glsl.
 //
 // Slots, counted from DIRECT_FIRST_SLOT, which the includer may define (0):
 // | slot | what | C++ |
