@@ -1,6 +1,7 @@
 #include "runtime/frame/renderer.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "runtime/base/check.h"
@@ -59,6 +60,8 @@ constexpr double kHiddenShare = 0.4;
 
 constexpr uint32_t kMaterialSlot = 5;  // VT_FIRST_SLOT and DIRECT_FIRST_SLOT of the resolve shaders
 
+constexpr double kFrameGoal_ms = 33;  // while someone works
+
 enum class ResolveKind { fast, fine, debug, direct, direct_decals, floor, floor_fine };
 constexpr size_t kResolveKinds = 7;
 
@@ -94,6 +97,7 @@ struct Renderer::Impl {
     gpu::Pipeline resolve[kResolveKinds];
 
     uint64_t frame = 0;
+    std::chrono::steady_clock::time_point frame_start = std::chrono::steady_clock::now();
     glm::uvec2 picture_size{0};
     bool settled = false;
     bool changed = true;      // something changed since the last frame
@@ -392,10 +396,8 @@ Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu
                     {kMaterialSlot + 2, texture->atlas(2).view(), texture->sampler()}};
     bound.insert(bound.end(), material.begin(), material.end());
     commands.bind(**pipeline, bound);
-    const glm::dvec2 ring = settings.ring_center_m - glm::dvec2(camera.position_m);
     commands.push(**pipeline,
-                  shared::ResolvePush{glm::vec2(ring), float(settings.ring_radius_m), settings.ring_inner,
-                                      uint32_t(settings.debug), settings.footprint_bias});
+                  shared::ResolvePush{uint32_t(settings.debug), settings.footprint_bias});
     commands.draw(3);
     commands.end_rendering();
     return {};
@@ -416,6 +418,9 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
                         glm::uvec2 extent, const FrameSettings& settings) {
     Impl& r = *impl_;
     ++r.frame;
+    const auto now = std::chrono::steady_clock::now();
+    const double last_frame_ms = std::chrono::duration<double, std::milli>(now - r.frame_start).count();
+    r.frame_start = now;
     const float scale = std::clamp(settings.render_scale, 0.1f, 1.0f);
     const glm::uvec2 size = glm::max(glm::uvec2(glm::round(glm::vec2(extent) * scale)), glm::uvec2(8));
     LOAM_TRY(r.targets.ensure(r.device, glm::max(extent, size)));
@@ -436,7 +441,10 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     const TextureView view{.camera_m = camera.position_m,
                            .pixels_per_radian = size.y * 0.5 / std::tan(camera.fov_y_rad * 0.5),
                            .frame = r.frame,
-                           .budget_pages = settings.page_budget};
+                           .budget_pages = settings.page_budget,
+                           // The coarse filter is for motion and work: then frames are waited for.
+                           .goal_ms = settings.fine_filter ? 0.0 : kFrameGoal_ms,
+                           .last_frame_ms = last_frame_ms};
     r.texture->request_inputs(view);
     if (settings.shading == Shading::direct) {
         r.request_direct_pages(view.pixels_per_radian, settings.footprint_bias);

@@ -54,10 +54,6 @@ struct FrameSettings {
     glm::dvec2 jitter_px{0, 0};
     float footprint_bias = 0;      // direct shading: log2, negative leaves filtering to supersampling
     int page_budget = -1;  // overrides RendererDesc::page_budget when >= 0
-    // Brush ring drawn on the ground by the resolve: centre in world metres, radius; radius 0: none.
-    glm::dvec2 ring_center_m{0, 0};
-    double ring_radius_m = 0;
-    float ring_inner = 0.5f;  // share of the radius where the hardness ring is drawn
 };
 
 struct MemoryRow {

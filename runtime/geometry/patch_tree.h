@@ -1,6 +1,6 @@
 // The patch quad tree: which pages of the height map are drawn, at which level, with which neighbours.
 // A node is split when the camera is near, all its children are resident, and the split keeps the level
-// difference between neighbours at most 4; what is not resident is requested. Any state of the cache draws
+// difference between neighbours at most log2(kPatchQuads); what is not resident is requested. Any state of the cache draws
 // one cover of the map, without overlap or gap. Sources: Far Cry 5 talk, "Terrain Quad Tree", "LOD
 // Transitions", "LOD Mesh Stitching".
 #pragma once

@@ -19,5 +19,5 @@ void main() {
     Surface s = Surface(t.albedo, bent_normal(p.ground, t.normal), t.gloss, t.occlusion, t.metalness);
     vec3 color = lit_pixel(p, s);
     if (kDebug) color = debug_color(p, s, t, color);
-    out_color = vec4(with_ring(p, color), 1.0);
+    out_color = vec4(color, 1.0);
 }

@@ -1,4 +1,4 @@
-// What the resolves share: where a pixel is, its light, the brush ring. The includer gives the material.
+// What the resolves share: where a pixel is, its light. The includer gives the material.
 // Slots 0–4: frame, depth, g-buffer, occlusion, shadow atlas; the material's slots follow from kMaterialSlot.
 #ifndef LOAM_RESOLVE_COMMON_GLSL
 #define LOAM_RESOLVE_COMMON_GLSL
@@ -49,16 +49,6 @@ vec3 lit_pixel(Pixel p, Surface s) {
     float visibility = sun_visibility(u, shadow_atlas, p.rel_m, p.ground, kFine);
     vec3 color = shade(u, s, -normalize(p.rel_m), visibility, p.sky_open);
     return to_screen(u, apply_haze(u, color, p.rel_m));
-}
-
-// The brush on the ground: a line at its radius, a fainter one where it begins to fall off. About two pixels wide.
-vec3 with_ring(Pixel p, vec3 color) {
-    float from_center = length(p.rel_m.xy - push.ring_center_rel_m);
-    float width = exp2(p.log2_short) * 1.3 + 1e-4;
-    float outer = 1.0 - smoothstep(0.0, width, abs(from_center - push.ring_radius_m) - width * 0.6);
-    float inner = 1.0 - smoothstep(0.0, width, abs(from_center - push.ring_radius_m * push.ring_inner) - width * 0.2);
-    float on = push.ring_radius_m > 0.0 ? max(outer * 0.9, inner * 0.35) : 0.0;
-    return mix(color, vec3(1.0, 0.93, 0.72), on);
 }
 
 #endif

@@ -12,5 +12,5 @@ void main() {
     float log2_footprint = mix(p.log2_long, p.log2_short, 0.5) + push.footprint_bias;
     MaterialSample m = with_decals(direct_material(p.rel_m.xy, log2_footprint), p.rel_m.xy, log2_footprint);
     Surface s = Surface(m.albedo, bent_normal(p.ground, m.normal), m.gloss, m.occlusion, m.metalness);
-    out_color = vec4(with_ring(p, lit_pixel(p, s)), 1.0);
+    out_color = vec4(lit_pixel(p, s), 1.0);
 }

@@ -5,9 +5,6 @@
 LOAM_BEGIN_SHARED
 
 struct ResolvePush {
-    vec2 ring_center_rel_m; // brush ring, camera-relative
-    float ring_radius_m;    // 0: none
-    float ring_inner;       // share of the radius where the brush begins to fall off
     uint debug_view;        // DebugView
     float footprint_bias;   // added to log2 of the footprint by direct shading: supersampling filters what a mip would
 };

@@ -207,7 +207,7 @@ TEST(PatchTree, AnyCacheGivesOneWatertightCover) {
 }
 
 // Only one corner is resident in depth: the distance alone would put level 0 beside the root's children.
-TEST(PatchTree, NeighboursDifferByFourLevelsAtMost) {
+TEST(PatchTree, NeighboursDifferByAWholeQuadAtMost) {
     MapFixture ground({.samples_x = 4097, .samples_y = 4097, .refine = 2}, 4);
     const auto map = cpu_map(ground.document(), 144);
     const int root = map->map().root().level;
@@ -234,8 +234,9 @@ TEST(PatchTree, NeighboursDifferByFourLevelsAtMost) {
         for (int s = 0; s < 4; ++s)
             deepest = std::max(deepest, int(set.patches[p].lod_deltas >> (4 * s) & 15u));
     }
-    EXPECT_EQ(deepest, 4);
-    EXPECT_EQ(finest, root - 5);  // beside a page of level root - 1
+    const int most = int(std::log2(kPatchQuads));
+    EXPECT_EQ(deepest, most);
+    EXPECT_EQ(finest, root - 1 - most);  // beside a page of level root - 1
 }
 
 PatchSet settle(HeightMap& map, const PatchView& view, uint64_t& frame, int& frames) {

@@ -80,8 +80,7 @@ TEST(ShaderIo, FrameUniforms) {
 
 TEST(ShaderIo, ResolvePush) {
     expect_layout("ResolvePush", sizeof(shared::ResolvePush),
-                  {AT(ResolvePush, ring_center_rel_m), AT(ResolvePush, ring_radius_m), AT(ResolvePush, ring_inner),
-                   AT(ResolvePush, debug_view), AT(ResolvePush, footprint_bias)});
+                  {AT(ResolvePush, debug_view), AT(ResolvePush, footprint_bias)});
 }
 
 TEST(ShaderIo, VtParams) {
@@ -96,7 +95,7 @@ TEST(ShaderIo, VtParams) {
 TEST(ShaderIo, ADifferentLayoutIsFound) {
     Layouts wrong = layouts();
     ASSERT_TRUE(wrong.count("ResolvePush"));
-    EXPECT_NE(wrong["ResolvePush"]["debug_view"], offsetof(shared::ResolvePush, ring_inner));
+    EXPECT_NE(wrong["ResolvePush"]["debug_view"], offsetof(shared::ResolvePush, footprint_bias));
 }
 
 } // namespace
