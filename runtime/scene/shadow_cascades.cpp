@@ -48,17 +48,25 @@ void ShadowCascades::on_dirt(std::span<const WorldRect> rects) {
     }
 }
 
-bool ShadowCascades::is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_t cut_hash, bool refine) const {
+glm::dvec2 ShadowCascades::snapped(const Cascade& c, const glm::dvec2& eye_m) const {
+    const double texel = 2.0 * c.half_m / texels_;
+    return glm::floor(eye_m / texel) * texel;
+}
+
+bool ShadowCascades::is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_t cut_hash,
+                              bool refine) const {
+    if (!c.valid || c.dirty) return true;
+    // A still picture must not depend on how the camera came to its place.
+    if (refine) return c.cut_hash != cut_hash || c.center_m != snapped(c, eye_m);
     const glm::dvec2 moved = glm::abs(eye_m - c.center_m);
-    return !c.valid || c.dirty || (refine && c.cut_hash != cut_hash) || std::max(moved.x, moved.y) > c.half_m * kWander;
+    return std::max(moved.x, moved.y) > c.half_m * kWander;
 }
 
 Status ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
                             const HeightMap& heights, const glm::dvec3& camera_m, int index) {
     Cascade& c = cascades_[size_t(index)];
-    const double texel = 2.0 * c.half_m / texels_;
     const glm::dvec2 eye(glm::dot(axes_.x, camera_m), glm::dot(axes_.y, camera_m));
-    c.center_m = glm::floor(eye / texel) * texel;
+    c.center_m = snapped(c, eye);
     c.z_m = glm::dot(axes_.z, camera_m);
     c.valid = true;
     c.dirty = false;

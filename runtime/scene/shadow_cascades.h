@@ -22,7 +22,8 @@ class ShadowCascades {
     // Heights inside changed.
     void on_dirt(std::span<const WorldRect> rects);
     // Decides which cascades are stale, draws them (at most `budget`, nearest first) and fills the uniforms.
-    // `refine`: also draw cascades again that show another cut of the ground than the picture; for still pictures.
+    // `refine`: also draw cascades again that are off centre or show another cut of the ground than the
+    // picture: a still picture must not depend on how the camera came to its place.
     Status update(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
                   const HeightMap& heights, const glm::dvec3& camera_m, const glm::dvec3& to_sun, int budget,
                   bool refine, shared::FrameUniforms& uniforms);
@@ -44,7 +45,10 @@ class ShadowCascades {
     struct Axes {
         glm::dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
     };
-    [[nodiscard]] bool is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_t cut_hash, bool refine) const;
+    // The light-space centre that the cascade has when it is drawn now.
+    [[nodiscard]] glm::dvec2 snapped(const Cascade& c, const glm::dvec2& eye_m) const;
+    [[nodiscard]] bool is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_t cut_hash,
+                                bool refine) const;
     Status draw(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
                 const HeightMap& heights, const glm::dvec3& camera_m, int index);
 
