@@ -93,7 +93,7 @@ LayerTextures layer_grass(uint32_t seed, int size) {
           .width_mm = 6.5f,
           .height_mm = 42,
           .root = {0.020f, 0.030f, 0.008f},
-          .young = {0.115f, 0.20f, 0.022f},
+          .young = {0.125f, 0.19f, 0.04f},
           .old = {0.055f, 0.11f, 0.018f},
           .dead = {0.27f, 0.22f, 0.10f},
           .dead_share = 0.12f,
@@ -119,7 +119,7 @@ LayerTextures layer_grass(uint32_t seed, int size) {
                                      .seed = hash(seed, static_cast<uint32_t>(k))});
         }
     }
-    return finished(canvas, {.relief = 1, .cavity = 0.55f, .mean_albedo = {0.088f, 0.128f, 0.026f}});
+    return finished(canvas, {.relief = 1, .cavity = 0.55f, .mean_albedo = {0.094f, 0.118f, 0.042f}});
 }
 
 LayerTextures layer_dry_grass(uint32_t seed, int size) {
