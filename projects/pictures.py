@@ -1,0 +1,71 @@
+#!/usr/bin/python3
+"""Makes the pictures of the README from the example project, with the program itself.
+
+    loam new out/valley --recipe valley --size 4096 --seed 1
+    PYTHONPATH=build/release/python /usr/bin/python3 projects/pictures.py out/valley docs/pictures
+
+The project is copied first: nothing is changed in it.
+"""
+import math
+import os
+import shutil
+import sys
+import tempfile
+
+import loam
+from PIL import Image
+
+
+def ground(project, x, y, above):
+    return project.height(x, y) + above
+
+
+def look(project, eye, target, above_eye, above_target=0.0, fov=55):
+    """Camera (x, y, z, yaw in degrees, pitch in degrees, fov) from a place above the ground to another."""
+    z0, z1 = ground(project, *eye, above_eye), ground(project, *target, above_target)
+    dx, dy = target[0] - eye[0], target[1] - eye[1]
+    yaw = math.degrees(math.atan2(dx, dy))
+    pitch = math.degrees(math.atan2(z1 - z0, math.hypot(dx, dy)))
+    return (eye[0], eye[1], z0, yaw, pitch, fov)
+
+
+def picture(project, camera, path, **options):
+    pixels = project.render(camera=camera, size=(1280, 720), supersample=2, **options)
+    Image.fromarray(pixels[:, :, :3].copy()).save(path, quality=88)
+    print(path)
+
+
+def walk(project, start, end, stride=0.75):
+    """Footprints along a line, left and right in turn."""
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    length = math.hypot(dx, dy)
+    heading = math.atan2(dx, dy)
+    side = (math.cos(heading), -math.sin(heading))
+    prints = []
+    for i in range(int(length / stride)):
+        t, off = i * stride / length, 0.12 if i % 2 else -0.12
+        prints.append({"x": start[0] + dx * t + side[0] * off, "y": start[1] + dy * t + side[1] * off,
+                       "heading_rad": heading, "foot": i % 2})
+    project.apply({"cmd": "footprints", "prints": prints, "length_m": 0.32, "depth_m": 0.03, "seed": 5})
+
+
+def main(source, out):
+    os.makedirs(out, exist_ok=True)
+    with tempfile.TemporaryDirectory() as folder:
+        copy = os.path.join(folder, "project")
+        shutil.copytree(source, copy)
+        with loam.open(copy) as project:
+            picture(project, look(project, (2000, 1500), (2260, 3000), 150, 40), f"{out}/valley.jpg")
+            picture(project, look(project, (3000, 1200), (2600, 1900), 60), f"{out}/ridge.jpg")
+            for i, (x, y, r) in enumerate([(2040, 1905, 14), (2075, 1935, 6), (2010, 1940, 9), (2120, 1990, 22)]):
+                project.apply({"cmd": "crater", "x": x, "y": y, "radius_m": r, "seed": 3 + i})
+            walk(project, (2012, 1862), (2034, 1886))
+            picture(project, look(project, (2008, 1852), (2052, 1915), 7), f"{out}/craters.jpg")
+            picture(project, look(project, (2016, 1864.5), (2023, 1874), 1.7), f"{out}/footprints.jpg")
+            picture(project, look(project, (2000, 1500), (2260, 3000), 150, 40), f"{out}/pages.jpg", debug="mips")
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit("usage: pictures.py PROJECT OUT")
+    main(sys.argv[1], sys.argv[2])
