@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes the pictures of the README from the example project, with the program itself.
 
-    loam new out/valley --recipe valley --size 4096 --seed 1
+    loam new out/valley --recipe valley --size 4096 --seed 7
     PYTHONPATH=build/release/python /usr/bin/python3 projects/pictures.py out/valley docs/pictures
 
 The project is copied first: nothing is changed in it.
