@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <type_traits>
 
 #include "editor/image_file.h"
 #include "editor/picture.h"
@@ -198,6 +199,36 @@ Status Session::step(const Camera& camera, int width, int height, const FrameSet
     for (int i = 0; i < frames; ++i)
         LOAM_TRY(one_frame(**renderer, camera, glm::uvec2(width, height), settings, nullptr));
     return {};
+}
+
+Result<GroundBuffers> Session::ground_buffers(const Camera& camera, int width, int height) {
+    auto renderer = this->renderer();
+    if (!renderer) return renderer.error();
+    auto frame = ring_->begin();
+    if (!frame) return frame.error();
+    gpu::Commands& commands = (*frame)->commands;
+    LOAM_TRY((*renderer)->render(*ring_, commands, camera, glm::uvec2(width, height), {}));
+    const glm::uvec2 filled = (*renderer)->picture_size();
+    GroundBuffers buffers{int(filled.x), int(filled.y), {}, {}};
+    const auto read_back = [&](gpu::Image& image, auto& texels, size_t per_pixel) {
+        using Value = typename std::remove_reference_t<decltype(texels)>::value_type;
+        const size_t row_values = filled.x * per_pixel, pitch_values = image.width() * per_pixel;
+        texels.resize(row_values * filled.y);
+        ring_->read_back(commands, image,
+                         [&texels, rows = filled.y, row_values, pitch_values](std::span<const std::byte> bytes) {
+                             for (size_t row = 0; row < rows; ++row)
+                                 std::memcpy(texels.data() + row * row_values,
+                                             bytes.data() + row * pitch_values * sizeof(Value),
+                                             row_values * sizeof(Value));
+                         });
+    };
+    read_back((*renderer)->gbuffer(), buffers.gbuffer, 4);
+    // Only 32-bit depth is floats; elsewhere the list stays empty.
+    if (device_->caps().depth_stencil == VK_FORMAT_D32_SFLOAT_S8_UINT)
+        read_back((*renderer)->depth(), buffers.depth, 1);
+    LOAM_TRY(ring_->finish(**frame));
+    ++frames_rendered_;
+    return buffers;
 }
 
 Camera Session::default_camera() {

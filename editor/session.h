@@ -30,6 +30,13 @@ struct Picture {
     std::vector<uint8_t> rgba;  // sRGB-encoded, row 0 is the top
 };
 
+// What the ground pass wrote, for tests; row 0 is the top.
+struct GroundBuffers {
+    int width = 0, height = 0;
+    std::vector<uint16_t> gbuffer;  // four halves a pixel, shaders/geometry/terrain_prepass.frag
+    std::vector<float> depth;       // reversed Z, 0 where there is no ground
+};
+
 struct RenderRequest {
     Camera camera;
     int width = 1280, height = 720;
@@ -64,6 +71,8 @@ class Session {
     Result<Picture> render(const RenderRequest& request);
     // `frames` frames, without waiting for the picture to settle.
     Status step(const Camera& camera, int width, int height, const FrameSettings& settings, int frames);
+    // One more frame, and what its ground pass wrote.
+    Result<GroundBuffers> ground_buffers(const Camera& camera, int width, int height);
     [[nodiscard]] int frames_rendered() const { return frames_rendered_; }
     [[nodiscard]] bool last_render_settled() const {
         return last_render_settled_;

@@ -78,6 +78,27 @@ void step(Project& p, const py::object& camera, int n, std::pair<int, int> size,
     unwrap(session.step(view, size.first, size.second, settings, n));
 }
 
+// A dict: "gbuffer" float16 (height, width, 4), "depth" float32 (height, width) or None.
+py::dict ground_buffers(Project& p, const py::object& camera, std::pair<int, int> size) {
+    Session& session = p.session();
+    const Camera view = to_camera(camera, session);
+    if (size.first < 1 || size.second < 1 || size.first > 16384 || size.second > 16384)
+        throw PythonError(
+            fmt::format("size {}x{} is outside 1 … 16384 pixels a side", size.first, size.second));
+    GroundBuffers buffers;
+    {
+        const py::gil_scoped_release release;
+        buffers = unwrap(session.ground_buffers(view, size.first, size.second));
+    }
+    py::dict out;
+    out["gbuffer"] =
+        py::array(py::dtype("float16"), {buffers.height, buffers.width, 4}, buffers.gbuffer.data());
+    out["depth"] = py::none();
+    if (!buffers.depth.empty())
+        out["depth"] = py::array_t<float>({buffers.height, buffers.width}, buffers.depth.data());
+    return out;
+}
+
 py::object stats(Project& p) {
     Session& session = p.session();
     Json json;
@@ -290,6 +311,9 @@ void bind_project(py::module_& module) {
           py::arg("camera") = py::none(), py::arg("size") = std::pair(960, 540), py::arg("reference") = false,
           py::arg("supersample") = 1, py::arg("debug") = "none", py::arg("render_scale") = 1.0,
           py::arg("max_frames") = 600);
+    c.def("ground_buffers", &ground_buffers,
+          "What the ground pass of one more frame wrote: normal x, y and log2 footprints; depth.",
+          py::arg("camera") = py::none(), py::arg("size") = std::pair(960, 540));
     c.def("close", &Project::close, "Closes the project; what was applied is on disk already.");
     c.def_property_readonly("closed", &Project::closed);
     c.def(
