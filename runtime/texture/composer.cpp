@@ -15,7 +15,7 @@ using gpu::Access;
 
 static_assert(kIndexPageBorder == kIndexBorder && kIndexPageTexels == kIndexTexels);
 
-// Texels or blocks of one mip of a rectangle, in the encoder's output order.
+// Blocks (BC1) or texels (RGBA8) of one mip of a rectangle.
 glm::ivec2 encoded_size(const TexelRect& rect, int mip, PageFormat format) {
     const int step = (format == PageFormat::bc1x3 ? 4 : 1) << mip;
     return {rect.width() / step, rect.height() / step};
@@ -25,24 +25,37 @@ int unit_bytes(PageFormat format) {
     return format == PageFormat::bc1x3 ? 8 : 4;
 }
 
-// Per texture, of both mips, in units.
+// The first mip that goes through the encoder: mip 0 of RGBA8 is copied from scratch as it is.
+int first_encoded_mip(PageFormat format) {
+    return format == PageFormat::bc1x3 ? 0 : 1;
+}
+
+// Per texture, of the encoded mips, in units.
 uint32_t encoded_units(const TexelRect& rect, PageFormat format) {
-    const glm::ivec2 a = encoded_size(rect, 0, format), b = encoded_size(rect, 1, format);
-    return uint32_t(a.x * a.y + b.x * b.y);
+    uint32_t units = 0;
+    for (int mip = first_encoded_mip(format); mip < 2; ++mip) {
+        const glm::ivec2 size = encoded_size(rect, mip, format);
+        units += uint32_t(size.x * size.y);
+    }
+    return units;
 }
 
 // Normals and gloss carry the picture; occlusion, metalness and feature bear more error. By eye on rock and
 // grass.
-constexpr float kWeights[3][4] = {{1, 1, 1, 0}, {0.7f, 1, 0.4f, 0}, {0.5f, 1, 0.3f, 0}};
+constexpr glm::vec4 kWeights[3] = {{1, 1, 1, 0}, {0.7f, 1, 0.4f, 0}, {0.5f, 1, 0.3f, 0}};
 
 }  // namespace
 
 struct Composer::Placed {
     ComposeJob job;
-    glm::ivec2 scratch_min{0};
-    shared::ComposePush push{};
+    shared::ComposeRect rect{};
     bool one_layer = false;
-    uint32_t first_unit = 0;  // in the encoded buffer
+};
+
+// What the shaders of a batch read: rectangles, and their tiles, those of one layer first.
+struct Composer::Work {
+    gpu::UploadSlice rects, tiles;
+    uint32_t tile_count = 0, one_layer_tiles = 0;
 };
 
 Result<PageAtlas> make_page_atlas(gpu::Device& device, PageFormat format, uint32_t pages_x,
@@ -74,17 +87,16 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
                                                    const TextureLayout& layout, PageFormat format,
                                                    bool decals) {
     std::unique_ptr<Composer> composer(new Composer(document, index, layers, layout, format));
-    for (gpu::Image& image : composer->scratch_) {
-        auto made =
-            gpu::Image::create(device, {.name = "page scratch",
-                                        .format = VK_FORMAT_R8G8B8A8_UNORM,
-                                        .width = kScratchWidth,
-                                        .height = kScratchHeight,
-                                        .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
-                                                 VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
-        if (!made.ok()) return made.error();
-        image = std::move(*made);
-    }
+    auto scratch =
+        gpu::Image::create(device, {.name = "page scratch",
+                                    .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                    .width = kScratchWidth,
+                                    .height = kScratchHeight,
+                                    .layer_count = 3,
+                                    .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                             VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
+    if (!scratch.ok()) return scratch.error();
+    composer->scratch_ = std::move(*scratch);
     const uint64_t units = encoded_units({0, 0, kScratchWidth, kScratchHeight}, format) * 3ull;
     auto encoded = gpu::Buffer::create(device, {.name = "page blocks",
                                                 .size_bytes = units * uint64_t(unit_bytes(format)),
@@ -102,7 +114,7 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
                         .shader = "texture/compose.comp",
                         .bindings = {gpu::sampled_image(0), gpu::sampled_image(1), gpu::sampled_image(2),
                                      gpu::sampled_image(3), gpu::sampled_image(4), gpu::storage_buffer(5),
-                                     gpu::storage_image(6), gpu::storage_image(7), gpu::storage_image(8)},
+                                     gpu::storage_image(6), gpu::storage_buffer(7), gpu::storage_buffer(8)},
                         .push_bytes = sizeof(shared::ComposePush),
                         .constants = {{0, one_layer}, {1, layers.has_metal ? 1u : 0u}}});
     };
@@ -112,14 +124,15 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     auto general = compose(0);
     if (!general.ok()) return general.error();
     composer->general_ = std::move(*general);
-    for (uint32_t mip = 0; mip < 2; ++mip) {
+    for (int mip = first_encoded_mip(format); mip < 2; ++mip) {
         auto encode = gpu::Pipeline::create(
-            device, gpu::ComputeDesc{.name = format == PageFormat::bc1x3 ? "page bc1" : "page rgba8",
-                                     .shader = format == PageFormat::bc1x3 ? "texture/bc1.comp"
-                                                                           : "texture/pack_rgba8.comp",
-                                     .bindings = {gpu::sampled_image(0), gpu::storage_buffer(1)},
-                                     .push_bytes = sizeof(shared::EncodePush),
-                                     .constants = {{0, mip}}});
+            device, gpu::ComputeDesc{
+                        .name = format == PageFormat::bc1x3 ? "page bc1" : "page rgba8",
+                        .shader = format == PageFormat::bc1x3 ? "texture/bc1.comp" : "texture/mip_rgba8.comp",
+                        .bindings = {gpu::sampled_image(0), gpu::storage_buffer(1), gpu::storage_buffer(2),
+                                     gpu::storage_buffer(3)},
+                        .push_bytes = sizeof(shared::EncodePush),
+                        .constants = {{0, uint32_t(mip)}}});
         if (!encode.ok()) return encode.error();
         composer->encode_[mip] = std::move(*encode);
     }
@@ -162,14 +175,14 @@ shared::LayerPlace Composer::layer_place(double origin_x_m, double origin_y_m, d
 
 // Where the page lies in its index page, and whether the rectangle holds one layer only.
 Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min) {
-    Placed placed{.job = job, .scratch_min = scratch_min};
+    Placed placed{.job = job};
     const VirtualMap& map = index_.map();
     const WorldRect square = layout_.square(job.page), index_square = map.page_rect(job.index_page);
     const double spacing_m = map.spacing_m(job.index_page.level);
     const glm::dvec2 origin((square.min_x - index_square.min_x) / spacing_m + kIndexBorder,
                             (square.min_y - index_square.min_y) / spacing_m + kIndexBorder);
     const double scale = layout_.page_side_m(job.page) / spacing_m;
-    placed.push = {.rect_min = {job.rect.x0, job.rect.y0},
+    placed.rect = {.rect_min = {job.rect.x0, job.rect.y0},
                    .rect_size = {job.rect.width(), job.rect.height()},
                    .scratch_min = scratch_min,
                    .index_origin = glm::vec2(origin),
@@ -177,7 +190,9 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
                    .index_slot = uint32_t(job.index_slot),
                    .first_place = 0,
                    .layer = 0,
-                   .last_layer = uint32_t(layers_.count - 1)};
+                   .last_layer = uint32_t(layers_.count - 1),
+                   .first_unit = 0,
+                   .units = encoded_units(job.rect, format_)};
 
     // One texel more on each side than the filter reads: the shader's floats may fall to the other side of a
     // texel's edge.
@@ -195,10 +210,10 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
     const auto layer_at = [&](int x, int y) {
         return std::min<int>(texels[size_t(y * kIndexTexels + x)].layer, layers_.count - 1);
     };
-    placed.push.layer = uint32_t(layer_at(seen.x0, seen.y0));
+    placed.rect.layer = uint32_t(layer_at(seen.x0, seen.y0));
     placed.one_layer = true;
     for (int y = seen.y0; y < seen.y1 && placed.one_layer; ++y)
-        for (int x = seen.x0; x < seen.x1; ++x) placed.one_layer &= layer_at(x, y) == int(placed.push.layer);
+        for (int x = seen.x0; x < seen.x1; ++x) placed.one_layer &= layer_at(x, y) == int(placed.rect.layer);
     return placed;
 }
 
@@ -229,54 +244,76 @@ Status Composer::cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std:
 
 Status Composer::cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch,
                            PageAtlas& atlas) {
-    cmd_materials(ring, commands, batch);
+    const Work work = upload(ring, batch);
+    cmd_materials(ring, commands, batch, work);
     if (decals_) cmd_decals(ring, commands, batch);
-    cmd_encode(commands, batch);
+    cmd_encode(commands, work);
     cmd_copy(commands, batch, atlas);
     return {};
 }
 
-void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std::span<Placed> batch) {
+// Fills in where each rectangle's places and output begin.
+Composer::Work Composer::upload(gpu::FrameRing& ring, std::span<Placed> batch) {
+    Work work;
+    uint32_t units = 0;
+    for (size_t i = 0; i < batch.size(); ++i) {
+        shared::ComposeRect& rect = batch[i].rect;
+        rect.first_place = uint32_t(i * size_t(layers_.count));
+        rect.first_unit = units;
+        units += rect.units * 3;
+        const uint32_t tiles = uint32_t(batch[i].job.rect.area() / (kTileTexels * kTileTexels));
+        work.tile_count += tiles;
+        if (batch[i].one_layer) work.one_layer_tiles += tiles;
+    }
+    work.rects = ring.upload(batch.size() * sizeof(shared::ComposeRect));
+    work.tiles = ring.upload(work.tile_count * sizeof(uint32_t));
+    auto* rects = work.rects.as<shared::ComposeRect>();
+    auto* tiles = work.tiles.as<uint32_t>();
+    for (size_t i = 0; i < batch.size(); ++i) rects[i] = batch[i].rect;
+    for (const bool one_layer : {true, false})
+        for (size_t i = 0; i < batch.size(); ++i) {
+            if (batch[i].one_layer != one_layer) continue;
+            const glm::ivec2 size = batch[i].rect.rect_size / kTileTexels;
+            for (int y = 0; y < size.y; ++y)
+                for (int x = 0; x < size.x; ++x)
+                    *tiles++ = shared::compose_tile(uint32_t(i), uint32_t(x), uint32_t(y));
+        }
+    return work;
+}
+
+void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch,
+                             const Work& work) {
     const size_t layer_count = size_t(layers_.count);
     const gpu::UploadSlice places = ring.upload(batch.size() * layer_count * sizeof(shared::LayerPlace));
     auto* out = places.as<shared::LayerPlace>();
-    for (size_t i = 0; i < batch.size(); ++i) {
-        const PageId& page = batch[i].job.page;
+    for (const Placed& placed : batch) {
+        const PageId& page = placed.job.page;
         const WorldRect square = layout_.square(page);
-        batch[i].push.first_place = uint32_t(i * layer_count);
         for (size_t layer = 0; layer < layer_count; ++layer)
-            out[i * layer_count + layer] =
-                layer_place(square.min_x, square.min_y, layout_.page_side_m(page), layout_.texel_m(page),
-                            layers_.tiles_m[layer], layers_.size_texels);
+            *out++ = layer_place(square.min_x, square.min_y, layout_.page_side_m(page), layout_.texel_m(page),
+                                 layers_.tiles_m[layer], layers_.size_texels);
     }
-    auto pass = commands.pass("texture compose", {{scratch_[0], Access::compute_storage},
-                                                  {scratch_[1], Access::compute_storage},
-                                                  {scratch_[2], Access::compute_storage},
+    auto pass = commands.pass("texture compose", {{scratch_, Access::compute_storage},
                                                   {layers_.albedo_reveal, Access::compute_sampled},
                                                   {layers_.normal_gloss_occlusion, Access::compute_sampled},
                                                   {layers_.metalness, Access::compute_sampled},
                                                   {index_.indices(), Access::compute_sampled},
                                                   {index_.tints(), Access::compute_sampled}});
     for (const bool one_layer : {true, false}) {
+        const uint32_t tiles = one_layer ? work.one_layer_tiles : work.tile_count - work.one_layer_tiles;
+        if (tiles == 0) continue;
         const gpu::Pipeline& pipeline = one_layer ? one_layer_ : general_;
-        bool bound = false;
-        for (const Placed& placed : batch) {
-            if (placed.one_layer != one_layer) continue;
-            if (!bound)
-                commands.bind(pipeline, {{0, layers_.albedo_reveal.view(), layers_.sampler},
-                                         {1, layers_.normal_gloss_occlusion.view(), layers_.sampler},
-                                         {2, layers_.metalness.view(), layers_.sampler},
-                                         {3, index_.indices().view(), nearest_},
-                                         {4, index_.tints().view(), nearest_},
-                                         {5, *places.buffer, places.offset, places.size_bytes},
-                                         {6, scratch_[0].mip_view(0)},
-                                         {7, scratch_[1].mip_view(0)},
-                                         {8, scratch_[2].mip_view(0)}});
-            bound = true;
-            commands.push(pipeline, placed.push);
-            commands.dispatch(uint32_t(placed.job.rect.width()) / kComposeGroup,
-                              uint32_t(placed.job.rect.height()) / kComposeGroup);
-        }
+        commands.bind(pipeline, {{0, layers_.albedo_reveal.view(), layers_.sampler},
+                                 {1, layers_.normal_gloss_occlusion.view(), layers_.sampler},
+                                 {2, layers_.metalness.view(), layers_.sampler},
+                                 {3, index_.indices().view(), nearest_},
+                                 {4, index_.tints().view(), nearest_},
+                                 {5, *places.buffer, places.offset, places.size_bytes},
+                                 {6, scratch_.mip_view(0)},
+                                 {7, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
+                                 {8, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes}});
+        commands.push(pipeline, shared::ComposePush{one_layer ? 0 : work.one_layer_tiles});
+        commands.dispatch(tiles);
     }
 }
 
@@ -285,17 +322,15 @@ void Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::sp
     {
         const auto lock = document_.read_lock();
         for (const Placed& placed : batch)
-            add_decals(document_, layout_, placed.job.page, placed.job.rect, placed.scratch_min, list);
+            add_decals(document_, layout_, placed.job.page, placed.job.rect, placed.rect.scratch_min, list);
     }
     if (list.instances.empty()) return;
     const uint64_t bytes = list.instances.size() * sizeof(shared::DecalInstance);
     const gpu::UploadSlice slice = ring.upload(bytes);
     std::memcpy(slice.data, list.instances.data(), bytes);
-    auto pass = commands.pass("texture decals", {{scratch_[0], Access::color_target},
-                                                 {scratch_[1], Access::color_target},
-                                                 {scratch_[2], Access::color_target}});
+    auto pass = commands.pass("texture decals", {{scratch_, Access::color_target}});
     const std::array<gpu::ColorTarget, 3> targets{
-        {{scratch_[0].mip_view(0)}, {scratch_[1].mip_view(0)}, {scratch_[2].mip_view(0)}}};
+        {{scratch_.layer_view(0, 0)}, {scratch_.layer_view(0, 1)}, {scratch_.layer_view(0, 2)}}};
     commands.begin_rendering({kScratchWidth, kScratchHeight}, targets);
     commands.set_viewport(0, 0, kScratchWidth, kScratchHeight);
     for (const DecalRun& run : list.runs) {
@@ -306,53 +341,41 @@ void Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::sp
     commands.end_rendering();
 }
 
-void Composer::cmd_encode(gpu::Commands& commands, std::span<Placed> batch) {
-    uint32_t units = 0;
-    for (Placed& placed : batch) {
-        placed.first_unit = units;
-        units += encoded_units(placed.job.rect, format_) * 3;
+void Composer::cmd_encode(gpu::Commands& commands, const Work& work) {
+    auto pass = commands.pass("texture encode",
+                              {{scratch_, Access::compute_sampled}, {encoded_, Access::compute_storage}});
+    for (int mip = first_encoded_mip(format_); mip < 2; ++mip) {
+        commands.bind(encode_[mip], {{0, scratch_.view(), nearest_},
+                                     {1, encoded_},
+                                     {2, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
+                                     {3, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes}});
+        commands.push(encode_[mip], shared::EncodePush{.tile_count = work.tile_count,
+                                                       .weights = {kWeights[0], kWeights[1], kWeights[2]}});
+        // Threads a group and units a tile, as the two shaders have them.
+        const bool bc1 = format_ == PageFormat::bc1x3;
+        const uint32_t threads = bc1 ? 8 : 64, units = !bc1 ? 16 : mip == 0 ? 4 : 1;
+        commands.dispatch((work.tile_count * units + threads - 1) / threads, 3);
     }
-    auto pass = commands.pass("texture encode", {{scratch_[0], Access::compute_sampled},
-                                                 {scratch_[1], Access::compute_sampled},
-                                                 {scratch_[2], Access::compute_sampled},
-                                                 {encoded_, Access::compute_storage}});
-    for (int mip = 0; mip < 2; ++mip)
-        for (uint32_t which = 0; which < 3; ++which) {
-            commands.bind(encode_[mip], {{0, scratch_[which].view(), nearest_}, {1, encoded_}});
-            for (const Placed& placed : batch) {
-                const glm::ivec2 size = encoded_size(placed.job.rect, mip, format_),
-                                 mip0 = encoded_size(placed.job.rect, 0, format_);
-                const uint32_t before = mip == 0 ? 0u : uint32_t(mip0.x * mip0.y);
-                commands.push(
-                    encode_[mip],
-                    shared::EncodePush{
-                        .scratch_min = placed.scratch_min,
-                        .size = size,
-                        .first = placed.first_unit + which * encoded_units(placed.job.rect, format_) + before,
-                        .albedo = which == 0 ? 1u : 0u,
-                        .unused = glm::vec2(0),
-                        .weights = {kWeights[which][0], kWeights[which][1], kWeights[which][2], 0}});
-                const uint32_t group_y =
-                    format_ == PageFormat::bc1x3 ? 1 : 8;  // local sizes of the two shaders
-                commands.dispatch((uint32_t(size.x) + 7) / 8, (uint32_t(size.y) + group_y - 1) / group_y);
-            }
-        }
 }
 
 void Composer::cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas) {
     auto pass = commands.pass("texture copy", {{encoded_, Access::copy_source},
+                                               {scratch_, Access::copy_source},
                                                {atlas[0], Access::copy_target},
                                                {atlas[1], Access::copy_target},
                                                {atlas[2], Access::copy_target}});
-    std::vector<VkBufferImageCopy> regions;
+    const int first_mip = first_encoded_mip(format_);
+    std::vector<VkBufferImageCopy> encoded;
+    std::vector<VkImageCopy> copied;
     for (uint32_t which = 0; which < 3; ++which) {
-        regions.clear();
+        encoded.clear();
+        copied.clear();
         for (const Placed& placed : batch) {
             const TexelRect& rect = placed.job.rect;
-            uint64_t unit = placed.first_unit + uint64_t(which) * encoded_units(rect, format_);
-            for (int mip = 0; mip < 2; ++mip) {
-                const glm::ivec2 corner = placed.job.target * kPageTexels + glm::ivec2(rect.x0, rect.y0);
-                regions.push_back(
+            const glm::ivec2 corner = placed.job.target * kPageTexels + glm::ivec2(rect.x0, rect.y0);
+            uint64_t unit = placed.rect.first_unit + uint64_t(which) * placed.rect.units;
+            for (int mip = first_mip; mip < 2; ++mip) {
+                encoded.push_back(
                     {.bufferOffset = unit * uint64_t(unit_bytes(format_)),
                      .bufferRowLength = 0,
                      .bufferImageHeight = 0,
@@ -362,15 +385,25 @@ void Composer::cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, 
                 const glm::ivec2 size = encoded_size(rect, mip, format_);
                 unit += uint64_t(size.x) * uint64_t(size.y);
             }
+            const glm::ivec2 from = placed.rect.scratch_min;
+            copied.push_back({.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, which, 1},
+                              .srcOffset = {from.x, from.y, 0},
+                              .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                              .dstOffset = {corner.x, corner.y, 0},
+                              .extent = {uint32_t(rect.width()), uint32_t(rect.height()), 1}});
         }
         vkCmdCopyBufferToImage(commands.handle(), encoded_.handle(), atlas[which].handle(),
-                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(regions.size()),
-                               regions.data());
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(encoded.size()),
+                               encoded.data());
+        if (first_mip > 0)
+            vkCmdCopyImage(commands.handle(), scratch_.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                           atlas[which].handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
+                           uint32_t(copied.size()), copied.data());
     }
 }
 
 uint64_t Composer::gpu_bytes() const {
-    return scratch_[0].bytes() + scratch_[1].bytes() + scratch_[2].bytes() + encoded_.size_bytes();
+    return scratch_.bytes() + encoded_.size_bytes();
 }
 
 }  // namespace loam

@@ -1,6 +1,7 @@
 // Composes rectangles of pages on the GPU: materials (compute), decals (graphics), compression (compute),
 // copy into the physical textures. Many rectangles share the scratch images: they are packed on shelves, and
-// a full scratch is flushed.
+// a full scratch is flushed. A batch is a fixed number of dispatches and copies, whatever the number of its
+// rectangles: shaders find theirs in a list of tiles of 8x8 texels.
 //
 // A rectangle is aligned to 8 texels, so that it holds whole blocks of both mips. Each texel is a function of
 // its place in the page and of the inputs only: a rectangle composed alone has the bytes that it has as part
@@ -48,14 +49,17 @@ class Composer {
 
   private:
     struct Placed;  // a job with its place in scratch and in the buffers
+    struct Work;
     Composer(const Document& document, IndexMap& index, LayerSet& layers, const TextureLayout& layout,
              PageFormat format);
     [[nodiscard]] Placed prepare(const ComposeJob& job, glm::ivec2 scratch_min);
     Status cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch,
                      PageAtlas& atlas);
-    void cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std::span<Placed> batch);
+    [[nodiscard]] Work upload(gpu::FrameRing& ring, std::span<Placed> batch);
+    void cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch,
+                       const Work& work);
     void cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch);
-    void cmd_encode(gpu::Commands& commands, std::span<Placed> batch);
+    void cmd_encode(gpu::Commands& commands, const Work& work);
     void cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas);
 
     const Document& document_;
@@ -63,7 +67,7 @@ class Composer {
     LayerSet& layers_;
     TextureLayout layout_;
     PageFormat format_;
-    std::array<gpu::Image, 3> scratch_;
+    gpu::Image scratch_;  // a layer a texture
     gpu::Buffer encoded_;
     gpu::Sampler nearest_;
     gpu::Pipeline one_layer_, general_, encode_[2], crater_, footprint_;

@@ -47,8 +47,8 @@ DecalSource source_of(const Operator& op) {
     return std::visit([](const auto& shape) { return source_of(shape); }, op.shape);
 }
 
-// The smallest footprint a pixel has is that of level ground seen from straight above at its distance, less
-// on slopes and in the corners of the picture; half of a quarter is left for those.
+// A pixel's smallest footprint is that of level ground seen from straight above; slopes and the picture's
+// corners make it smaller still, for which this share is left.
 constexpr double kFootprintMargin = 0.125;
 
 int clamped_int(double v) {

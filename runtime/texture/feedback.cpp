@@ -35,7 +35,10 @@ std::unordered_map<uint32_t, uint32_t> count_values(std::span<const uint32_t> va
 
 FeedbackResult analyse_feedback(const FeedbackInput& input) {
     FeedbackResult result;
-    std::unordered_map<PageId, uint32_t, PageIdHash> popularity;
+    struct Wish {
+        uint32_t popularity = 0, cells = 0;
+    };
+    std::unordered_map<PageId, Wish, PageIdHash> wishes;
     for (const auto& [value, count] : count_values(input.values)) {
         result.terrain_cells += count;
         const uint32_t id = value >> 16 & 0xff;
@@ -46,14 +49,16 @@ FeedbackResult analyse_feedback(const FeedbackInput& input) {
         PageId page{image, width - mip, int(value & 0xff), int(value >> 8 & 0xff)};
         if (page.x >> page.depth != 0 || page.y >> page.depth != 0) continue;
         if ((value & kFeedbackFinerBit) != 0 && !image.live && mip == 0) result.wants_finer.push_back(page);
+        wishes[page].cells += count;
         for (;; page = page.parent()) {
-            popularity[page] += count;
+            wishes[page].popularity += count;
             if (page.depth == 0) break;
         }
     }
-    for (const auto& [page, count] : popularity) {
-        const uint32_t biased = page.depth == 0 ? count + kRootBias : count;
-        if (biased >= input.threshold || input.is_visible(page)) result.requests.push_back({page, biased});
+    for (const auto& [page, wish] : wishes) {
+        const uint32_t biased = page.depth == 0 ? wish.popularity + kRootBias : wish.popularity;
+        if (biased >= input.threshold || input.is_visible(page))
+            result.requests.push_back({page, biased, wish.cells});
     }
     std::sort(result.requests.begin(), result.requests.end(), before);
     const size_t limit = std::max<size_t>(1, input.capacity_pages / 3);

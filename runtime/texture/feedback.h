@@ -23,6 +23,7 @@ struct FeedbackImages {
 struct PageRequest {
     PageId page;
     uint32_t popularity = 0;  // cells of the feedback buffer that want the page or something below it
+    uint32_t cells = 0;       // that want this very page
 };
 
 struct FeedbackInput {

@@ -42,6 +42,10 @@ struct TextureView {
     uint64_t frame = 0;
     float mip_bias = 0;
     int budget_pages = -1;  // overrides VirtualTextureDesc::budget_pages when >= 0
+    // While someone works: what a frame may take, and how long the last one took (0: unknown). Composition
+    // adapts.
+    double goal_ms = 0;  // 0: none
+    double last_frame_ms = 0;
 };
 
 class VirtualTexture {

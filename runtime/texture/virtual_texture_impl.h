@@ -9,6 +9,7 @@
 #include <unordered_set>
 #include <vector>
 
+#include "runtime/texture/compose_budget.h"
 #include "runtime/texture/composer.h"
 #include "runtime/texture/feedback.h"
 #include "runtime/texture/page_pool.h"
@@ -37,7 +38,8 @@ struct VirtualTexture::Impl {
           pool(s.pages_per_side),
           sectors(sector_desc),
           inbox(std::make_shared<Inbox>()),
-          popularity(size_t(pool.place_count()), 0) {}
+          popularity(size_t(pool.place_count()), 0),
+          shown(size_t(pool.place_count()), 0) {}
 
     // virtual_texture_plan.cpp
     void advance(const TextureView& view);
@@ -46,6 +48,7 @@ struct VirtualTexture::Impl {
     void enter_tree(int place);
     void leave_tree(int place);
     void gather_missing();
+    void find_shown();
     void want(const PageRequest& request);
     void make_room();
     void order_dirty();
@@ -89,7 +92,11 @@ struct VirtualTexture::Impl {
     std::vector<PageRequest> asked;     // by request_pages
     std::vector<PageRequest> missing;   // absent, most wanted first
     std::vector<uint32_t> popularity;   // by place, of this frame's wishes; 0: not wanted
-    std::vector<int> dirty_order;       // dirty places, most wanted first
+    std::vector<uint32_t> shown;        // by place: cells of the newest feedback that see this page
+    std::vector<int> dirty_order;       // dirty places: those seen, those wanted, the others; nearest first
+    glm::dvec2 camera_m{0};
+    ComposeBudget budget;
+    int64_t composed_texels = 0;  // by the last update
     Statistics counted;
 };
 

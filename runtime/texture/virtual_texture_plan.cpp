@@ -9,8 +9,9 @@ namespace loam {
 
 namespace {
 
-constexpr int64_t kDirtyTexelsPerFrame =
-    4ll * kPageTexels * kPageTexels;    // four whole pages: 10–30 ms on software devices
+// Dirt that is in view is composed in the next frame up to this, whatever the budget says: a dab shows at
+// once.
+constexpr int64_t kShownDirtTexels = 4 * ComposeBudget::kPage;
 constexpr size_t kInputLookahead = 24;  // index pages asked for ahead, of missing pages and of dirty ones
 // A page not wanted for so long, whose parent is, only shows texels too fine for the distance.
 constexpr uint64_t kTooFineFrames = 30;
@@ -116,6 +117,23 @@ void VirtualTexture::Impl::gather_missing() {
     missing = std::move(unique);
 }
 
+// Which pages the picture shows now: what a cell wants, or the nearest page above it that is usable.
+void VirtualTexture::Impl::find_shown() {
+    std::fill(shown.begin(), shown.end(), 0u);
+    const auto show = [&](PageId page, uint32_t cells) {
+        for (;; page = page.parent()) {
+            const int place = pool.find(page);
+            if (place >= 0 && pool.place(place).state == PagePool::State::usable) {
+                shown[size_t(place)] += cells;
+                return;
+            }
+            if (page.depth == 0) return;
+        }
+    };
+    for (const PageRequest& r : requests)
+        if (r.cells > 0) show(r.page, r.cells);
+}
+
 // Pages leave the trees early enough for their places to rest before they are needed.
 void VirtualTexture::Impl::make_room() {
     int available = 0;
@@ -140,11 +158,16 @@ void VirtualTexture::Impl::order_dirty() {
     dirty_order.clear();
     for (int i = 0; i < pool.place_count(); ++i)
         if (!pool.place(i).dirty.empty()) dirty_order.push_back(i);
+    const auto distance_m = [&](int place) {
+        return layout.square(pool.place(place).page).distance(camera_m.x, camera_m.y);
+    };
     std::sort(dirty_order.begin(), dirty_order.end(), [&](int a, int b) {
-        const uint32_t pa = popularity[size_t(a)], pb = popularity[size_t(b)];
-        if (pa != pb) return pa > pb;
-        const uint64_t ra = pool.place(a).last_requested, rb = pool.place(b).last_requested;
-        return ra != rb ? ra > rb : a < b;
+        const uint32_t sa = shown[size_t(a)], sb = shown[size_t(b)];
+        if (sa != sb) return sa > sb;
+        const bool wa = popularity[size_t(a)] > 0, wb = popularity[size_t(b)] > 0;
+        if (wa != wb) return wa;
+        const double da = distance_m(a), db = distance_m(b);
+        return da != db ? da < db : a < b;
     });
 }
 
@@ -159,7 +182,10 @@ void VirtualTexture::Impl::advance(const TextureView& view) {
         layout.texel_m(finest_default) * view.pixels_per_radian * std::exp2(-double(view.mip_bias));
     for (const ImageId& image : sectors.update({view.camera_m.x, view.camera_m.y}, radius_m, frame))
         drop_image(image);
+    camera_m = {view.camera_m.x, view.camera_m.y};
+    budget.frame_took(view.last_frame_ms, view.goal_ms, composed_texels);
     gather_missing();
+    find_shown();
     make_room();
     order_dirty();
 }
@@ -190,14 +216,20 @@ std::vector<ComposeJob> VirtualTexture::Impl::choose_jobs(const TextureView& vie
     for (const int place : dirty_order) {
         if (!ready(pool.place(place).page)) continue;
         const TexelRect rect = aligned_out(pool.place(place).dirty, 8, kPageTexels);
-        if (texels > 0 && texels + rect.area() > kDirtyTexelsPerFrame) break;
+        const int64_t limit = shown[size_t(place)] > 0 ? kShownDirtTexels : budget.texels();
+        if (texels > 0 && texels + rect.area() > limit) break;
         texels += rect.area();
         jobs.push_back(make_job(place, rect));
         pool.clear_dirty(place);
     }
     std::erase_if(dirty_order, [&](int place) { return pool.place(place).dirty.empty(); });
 
+    // New pages share the budget with dirt; at least one is composed every other frame.
     int left = view.budget_pages >= 0 ? view.budget_pages : desc.budget_pages;
+    if (view.goal_ms > 0) {
+        const int64_t fit = std::max<int64_t>(0, budget.texels() - texels) / ComposeBudget::kPage;
+        left = std::min(left, std::max(int(fit), texels == 0 || frame % 2 == 0 ? 1 : 0));
+    }
     std::vector<PageRequest> still_missing;
     for (const PageRequest& request : missing) {
         const int place = left > 0 && ready(request.page) ? pool.take(request.page, frame) : -1;
@@ -210,7 +242,9 @@ std::vector<ComposeJob> VirtualTexture::Impl::choose_jobs(const TextureView& vie
         jobs.push_back(make_job(place, {0, 0, kPageTexels, kPageTexels}));
     }
     missing = std::move(still_missing);
+    composed_texels = 0;
     for (const ComposeJob& job : jobs) {
+        composed_texels += job.rect.area();
         ++counted.rects_composed;
         counted.texels_composed += uint64_t(job.rect.area());
     }

@@ -1,17 +1,20 @@
 #version 460
-// Compresses a rectangle of scratch to BC1 blocks in a buffer, one thread a block.
+// Compresses rectangles of scratch to BC1 blocks in a buffer, one thread a block.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/texture/bc1.h"
 #include "shaders/texture/compose_io.h"
-layout(local_size_x = 8, local_size_y = 1) in;
+layout(local_size_x = 8) in;
 layout(binding = 1, scalar) writeonly buffer Blocks { uvec2 blocks[]; };
+const uint kMip0Units = 1u;
 #include "shaders/texture/encode_read.glsl"
 
 void main() {
-    ivec2 block = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(block, push.size))) return;
+    const int kLog2Side = 1 - kMip; // a tile of 8 texels is 2 x 2 blocks, or one of mip 1
+    if (gl_GlobalInvocationID.x >= push.tile_count << (2 * kLog2Side)) return;
+    int which = int(gl_WorkGroupID.y);
+    Unit unit = unit_of(gl_GlobalInvocationID.x, kLog2Side, which, 2);
     vec3 texels[16];
-    for (int i = 0; i < 16; ++i) texels[i] = read_texel(block * 4 + ivec2(i & 3, i >> 2));
-    blocks[push.first + uint(block.y * push.size.x + block.x)] = bc1_encode(texels, push.weights.xyz);
+    for (int i = 0; i < 16; ++i) texels[i] = read_texel(unit.scratch_min, unit.at * 4 + ivec2(i & 3, i >> 2), which);
+    blocks[unit.output_index] = bc1_encode(texels, push.weights[which].xyz);
 }

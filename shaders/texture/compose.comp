@@ -1,11 +1,11 @@
 #version 460
-// Composes one rectangle of one page into the scratch images, in the physical texture's channel layout.
+// Composes rectangles of pages into scratch, in the physical texture's channel layout: a workgroup a tile.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/texture/compose_io.h"
 #include "shaders/texture/texture_io.h"
 
-layout(local_size_x = kComposeGroup, local_size_y = kComposeGroup) in;
+layout(local_size_x = kTileTexels, local_size_y = kTileTexels) in;
 layout(constant_id = 0) const bool kOneLayer = false;
 layout(constant_id = 1) const bool kHasMetal = false;
 
@@ -15,35 +15,38 @@ layout(binding = 2) uniform sampler2DArray layer_metal;
 layout(binding = 3) uniform usampler2DArray index_pages;
 layout(binding = 4) uniform sampler2DArray tint_pages;
 layout(binding = 5, scalar) readonly buffer Places { LayerPlace places[]; };
-layout(binding = 6, rgba8) uniform writeonly image2D scratch0;
-layout(binding = 7, rgba8) uniform writeonly image2D scratch1;
-layout(binding = 8, rgba8) uniform writeonly image2D scratch2;
+layout(binding = 6, rgba8) uniform writeonly image2DArray scratch; // a layer a texture
+layout(binding = 7, scalar) readonly buffer Rects { ComposeRect rects[]; };
+layout(binding = 8, scalar) readonly buffer Tiles { uint tiles[]; };
 layout(push_constant, scalar) uniform Push { ComposePush push; };
+
+ComposeRect rect;
 
 #define MATERIAL_ALBEDO layer_albedo
 #define MATERIAL_NORMAL layer_normal
 #define MATERIAL_METAL layer_metal
-#define MATERIAL_PLACE(layer) places[push.first_place + (layer)]
+#define MATERIAL_PLACE(layer) places[rect.first_place + (layer)]
 #include "shaders/texture/material.glsl"
 
 void main() {
-    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
-    if (any(greaterThanEqual(at, push.rect_size))) return;
+    uint tile = tiles[push.first_tile + gl_WorkGroupID.x];
+    rect = rects[tile >> 10u];
+    ivec2 at = ivec2(tile & 31u, tile >> 5u & 31u) * kTileTexels + ivec2(gl_LocalInvocationID.xy);
     // Everything follows from the texel's place in the page, never from its place in the rectangle.
-    ivec2 texel = push.rect_min + at;
+    ivec2 texel = rect.rect_min + at;
     precise vec2 position = (vec2(texel) - (float(kPageBorder) - 0.5)) * (1.0 / float(kPagePayload));
-    precise vec2 index_at = push.index_origin + position * push.index_scale;
+    precise vec2 index_at = rect.index_origin + position * rect.index_scale;
     vec2 corner = floor(index_at);
     precise vec2 fraction = index_at - corner;
-    ivec3 base = ivec3(ivec2(corner), int(push.index_slot));
+    ivec3 base = ivec3(ivec2(corner), int(rect.index_slot));
 
-    uvec4 layers = uvec4(push.layer);
+    uvec4 layers = uvec4(rect.layer);
     if (!kOneLayer) {
         layers.x = texelFetch(index_pages, base, 0).r;
         layers.y = texelFetch(index_pages, base + ivec3(1, 0, 0), 0).r;
         layers.z = texelFetch(index_pages, base + ivec3(0, 1, 0), 0).r;
         layers.w = texelFetch(index_pages, base + ivec3(1, 1, 0), 0).r;
-        layers = min(layers, uvec4(push.last_layer));
+        layers = min(layers, uvec4(rect.last_layer));
     }
     vec3 t0 = texelFetch(tint_pages, base, 0).rgb;
     vec3 t1 = texelFetch(tint_pages, base + ivec3(1, 0, 0), 0).rgb;
@@ -51,11 +54,11 @@ void main() {
     vec3 t3 = texelFetch(tint_pages, base + ivec3(1, 1, 0), 0).rgb;
     MaterialSample m = evaluate_material(layers, t0, t1, t2, t3, fraction, position, 0.0);
 
-    ivec2 target = push.scratch_min + at;
+    ivec2 target = rect.scratch_min + at;
     precise vec3 albedo = sqrt(clamp(m.albedo, 0.0, 1.0));
     precise float normal_x = page_encode_normal(m.normal.x);
     precise float normal_y = page_encode_normal(m.normal.y);
-    imageStore(scratch0, target, vec4(albedo, 1.0));
-    imageStore(scratch1, target, vec4(m.gloss, normal_x, m.occlusion, 1.0));
-    imageStore(scratch2, target, vec4(m.metalness, normal_y, 0.0, 1.0));
+    imageStore(scratch, ivec3(target, 0), vec4(albedo, 1.0));
+    imageStore(scratch, ivec3(target, 1), vec4(m.gloss, normal_x, m.occlusion, 1.0));
+    imageStore(scratch, ivec3(target, 2), vec4(m.metalness, normal_y, 0.0, 1.0));
 }

@@ -6,7 +6,6 @@ LOAM_BEGIN_SHARED
 
 #define kScratchWidth 1024
 #define kScratchHeight 512
-#define kComposeGroup 8
 
 // A layer's constants.
 struct LayerParams {
@@ -23,25 +22,37 @@ struct LayerPlace {
     float lod_bias;
 };
 
-struct ComposePush {
+// A rectangle of a page to be composed and encoded.
+struct ComposeRect {
     ivec2 rect_min;      // texels of the page, border included
     ivec2 rect_size;
     ivec2 scratch_min;   // where rect_min goes
     vec2 index_origin;   // the payload's corner in texels of the index page, border included
     float index_scale;   // index texels a payload side
     uint index_slot;
-    uint first_place;    // of the job's layer places
-    uint layer;          // of one-layer pages
+    uint first_place;    // of the rectangle's layer places
+    uint layer;          // of one-layer rectangles
     uint last_layer;     // larger indices in the map count as this one
+    uint first_unit;     // of its output: uvec2 (BC1) or uint (RGBA8), mip by mip, texture by texture
+    uint units;          // a texture
+};
+
+// Work is listed in squares of 8 texels, so that a dispatch holds any number of rectangles:
+// | bits | meaning |
+// | --- | --- |
+// | 0–4 | x in the rectangle, squares |
+// | 5–9 | y |
+// | 10–31 | rectangle |
+#define kTileTexels 8
+LOAM_INLINE uint compose_tile(uint rect, uint x, uint y) { return rect << 10u | y << 5u | x; }
+
+struct ComposePush {
+    uint first_tile;     // of this dispatch
 };
 
 struct EncodePush {
-    ivec2 scratch_min;   // texels
-    ivec2 size;          // blocks (BC1) or texels (RGBA8) of this mip
-    uint first;          // output index: uvec2 (BC1) or uint (RGBA8)
-    uint albedo;         // 1: mips average the square, as albedo is stored as a square root
-    vec2 unused;
-    vec4 weights;        // of the channels in the block compressor
+    uint tile_count;
+    vec4 weights[3];     // of each texture's channels in the block compressor
 };
 
 LOAM_END_SHARED

@@ -1,16 +1,40 @@
-// What the two encoders read: a texel of mip kMip of a rectangle in scratch; mip 1 is the mean of four texels.
+// What the two encoders share: a thread a unit (block or texel), a texture a workgroup's z, and a texel of mip kMip of a rectangle
+// in scratch; mip 1 is the mean of four texels.
 layout(constant_id = 0) const int kMip = 0;
-layout(binding = 0) uniform sampler2D scratch;
+layout(binding = 0) uniform sampler2DArray scratch;
+layout(binding = 2, scalar) readonly buffer Rects { ComposeRect rects[]; };
+layout(binding = 3, scalar) readonly buffer Tiles { uint tiles[]; };
 layout(push_constant, scalar) uniform Push { EncodePush push; };
 
-vec3 read_texel(ivec2 texel) {
-    if (kMip == 0) return texelFetch(scratch, push.scratch_min + texel, 0).rgb;
-    ivec2 at = push.scratch_min + texel * 2;
+// Albedo is stored as a square root: its mip averages the square.
+vec3 read_texel(ivec2 scratch_min, ivec2 texel, int which) {
+    if (kMip == 0) return texelFetch(scratch, ivec3(scratch_min + texel, which), 0).rgb;
+    ivec3 at = ivec3(scratch_min + texel * 2, which);
     precise vec3 a = texelFetch(scratch, at, 0).rgb;
-    precise vec3 b = texelFetch(scratch, at + ivec2(1, 0), 0).rgb;
-    precise vec3 c = texelFetch(scratch, at + ivec2(0, 1), 0).rgb;
-    precise vec3 d = texelFetch(scratch, at + ivec2(1, 1), 0).rgb;
+    precise vec3 b = texelFetch(scratch, at + ivec3(1, 0, 0), 0).rgb;
+    precise vec3 c = texelFetch(scratch, at + ivec3(0, 1, 0), 0).rgb;
+    precise vec3 d = texelFetch(scratch, at + ivec3(1, 1, 0), 0).rgb;
     precise vec3 mean = (a + b + c + d) * 0.25;
     precise vec3 mean_square = sqrt((a * a + b * b + c * c + d * d) * 0.25);
-    return push.albedo != 0u ? mean_square : mean; // a rectangle of a page: no branch worth having
+    return which == 0 ? mean_square : mean;
+}
+
+// Where a unit of a tile lies: units a texel square's side (2 or 1 blocks, 4 texels of mip 1 …) as a power of two.
+struct Unit {
+    ivec2 at;          // of the rectangle's mip, units
+    ivec2 scratch_min;
+    uint output_index;
+};
+Unit unit_of(uint thread, int log2_side, int which, int log2_unit_texels) {
+    uint tile = tiles[thread >> (2 * log2_side)];
+    ComposeRect rect = rects[tile >> 10u];
+    int inside = int(thread) & ((1 << (2 * log2_side)) - 1);
+    Unit unit;
+    unit.at = (ivec2(tile & 31u, tile >> 5u & 31u) << log2_side) + ivec2(inside & ((1 << log2_side) - 1), inside >> log2_side);
+    unit.scratch_min = rect.scratch_min;
+    ivec2 size = rect.rect_size >> (log2_unit_texels + kMip);
+    ivec2 mip0 = rect.rect_size >> log2_unit_texels;
+    uint before = kMip == 0 ? 0u : uint(mip0.x * mip0.y) * kMip0Units;
+    unit.output_index = rect.first_unit + uint(which) * rect.units + before + uint(unit.at.y * size.x + unit.at.x);
+    return unit;
 }
