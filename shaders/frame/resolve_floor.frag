@@ -18,5 +18,5 @@ void main() {
     vec2 c = textureLod(page2, uv, 0.0).rg;
     vec2 normal = vec2(page_decode_normal(b.g), page_decode_normal(c.g));
     Surface s = Surface(a * a, bent_normal(p.ground, normal), b.r, b.b, c.r);
-    out_color = vec4(with_ring(p, lit_pixel(p, s)), 1.0);
+    out_color = vec4(lit_pixel(p, s), 1.0);
 }
