@@ -104,8 +104,8 @@ struct Renderer::Impl {
     uint64_t view_frame = 0;  // the first frame of the present view
     PatchSet patches;
     Camera last_camera;
-    uint32_t cascades_drawn = 0;
-    gpu::UploadSlice decals;  // of direct shading, this frame's
+    std::vector<gpu::PassTime> pass_times;  // of the newest finished frame
+    gpu::UploadSlice decals;                // of direct shading, this frame's
     bool has_decals = false;
     shared::FrameUniforms last_uniforms{};  // for resolve_again
 
@@ -121,7 +121,7 @@ struct Renderer::Impl {
     [[nodiscard]] std::vector<gpu::Bound> direct_material() const;
     void prepass(gpu::Commands& commands, glm::uvec2 size, const shared::FrameUniforms& u);
     Status light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& uniform_slice,
-                 const Camera& camera, const FrameSettings& settings, ResolvePart part);
+                 const FrameSettings& settings, ResolvePart part);
 };
 
 Renderer::Renderer() = default;
@@ -353,11 +353,11 @@ std::vector<gpu::Bound> Renderer::Impl::direct_material() const {
 }
 
 Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& slice,
-                             const Camera& camera, const FrameSettings& settings, ResolvePart part) {
+                             const FrameSettings& settings, ResolvePart part) {
     const bool floor = part == ResolvePart::floor;
     const bool direct = settings.shading == Shading::direct;
     const ResolveKind kind = floor ? settings.fine_filter ? ResolveKind::floor_fine : ResolveKind::floor
-                             : direct && has_decals                ? ResolveKind::direct_decals
+                             : direct && has_decals              ? ResolveKind::direct_decals
                              : direct                            ? ResolveKind::direct
                              : settings.debug != DebugView::none ? ResolveKind::debug
                              : settings.fine_filter              ? ResolveKind::fine
@@ -396,8 +396,7 @@ Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu
                     {kMaterialSlot + 2, texture->atlas(2).view(), texture->sampler()}};
     bound.insert(bound.end(), material.begin(), material.end());
     commands.bind(**pipeline, bound);
-    commands.push(**pipeline,
-                  shared::ResolvePush{uint32_t(settings.debug), settings.footprint_bias});
+    commands.push(**pipeline, shared::ResolvePush{uint32_t(settings.debug), settings.footprint_bias});
     commands.draw(3);
     commands.end_rendering();
     return {};
@@ -418,6 +417,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
                         glm::uvec2 extent, const FrameSettings& settings) {
     Impl& r = *impl_;
     ++r.frame;
+    r.pass_times.assign(ring.pass_times().begin(), ring.pass_times().end());
     const auto now = std::chrono::steady_clock::now();
     const double last_frame_ms = std::chrono::duration<double, std::milli>(now - r.frame_start).count();
     r.frame_start = now;
@@ -472,7 +472,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
         LOAM_TRY(r.texture->record_feedback(ring, commands, r.targets.depth, r.targets.gbuffer, *slice.buffer,
                                             slice.offset));
     // Sky, then the terrain's pixels from the virtual texture.
-    LOAM_TRY(r.light(commands, size, slice, camera, settings, ResolvePart::all));
+    LOAM_TRY(r.light(commands, size, slice, settings, ResolvePart::all));
     r.last_uniforms = u;
     commands.use({{r.targets.picture, Access::fragment_sampled}});
 
@@ -489,7 +489,7 @@ Status Renderer::resolve_again(gpu::FrameRing& ring, gpu::Commands& commands, co
     Impl& r = *impl_;
     const gpu::UploadSlice slice = ring.upload(sizeof(r.last_uniforms));
     *slice.as<shared::FrameUniforms>() = r.last_uniforms;
-    return r.light(commands, r.picture_size, slice, r.last_camera, settings,
+    return r.light(commands, r.picture_size, slice, settings,
                    probe == ResolveProbe::floor ? ResolvePart::floor : ResolvePart::ground);
 }
 
@@ -541,6 +541,7 @@ FrameStatistics Renderer::statistics() const {
     r.indices->map().for_each_resident([&](const MapPage&, int, const TexelRect&) { ++s.index_pages; });
     s.shadow_cascades_drawn = r.shadows->drawn();
     s.texture = r.texture->statistics();
+    s.passes = r.pass_times;
     s.height = r.heights->map().counters();
     s.index = r.indices->map().counters();
     s.memory = {{"height pages (GPU)", r.heights->gpu_bytes()},
