@@ -243,11 +243,10 @@ shared::FrameUniforms Renderer::Impl::uniforms(const Camera& camera, glm::uvec2 
     u.clip_from_rel = glm::mat4(clip);
     u.rel_from_clip = glm::mat4(glm::inverse(clip));
     const ProjectSettings& project = document.settings();
-    fill_sun_sky({project.sun_azimuth_rad, project.sun_elevation_rad, project.haze_per_km}, u);
+    fill_sun_sky(
+        {project.sun_azimuth_rad, project.sun_elevation_rad, project.haze_per_km, camera.position_m.z}, u);
     u.picture_px = glm::vec2(size);
     u.inv_picture_px = 1.0f / glm::vec2(size);
-    u.camera_z_m = float(camera.position_m.z);
-    u.near_m = float(camera.near_m);
     u.frame = uint32_t(frame);
     return u;
 }

@@ -55,14 +55,15 @@ void fill_sun_sky(const SunSky& sky, shared::FrameUniforms& u) {
     const glm::vec3 horizon = shared::sky_radiance(side, to_sun) * kSunAbove;
     const glm::vec3 glow = glm::max(shared::sky_radiance(toward, to_sun) * kSunAbove - horizon, glm::vec3(0));
 
+    const float thinned = std::exp(-std::clamp(float(sky.eye_height_m) / kHazeScaleHeight_m, -4.0f, 30.0f));
     u.sun_direction = glm::vec4(to_sun, std::cos(kSunAngularRadius_rad));
     u.sun_irradiance = glm::vec4(irradiance, exposure);
     u.sun_above = glm::vec4(glm::vec3(kSunAbove), 0);
-    u.sky_ambient = glm::vec4(ambient, float(sky.haze_per_km) * 0.001f);
+    u.sky_ambient = glm::vec4(ambient, float(sky.haze_per_km) * 0.001f * thinned);
     u.ground_bounce = glm::vec4((irradiance * std::max(to_sun.z, 0.0f) / 3.1416f + ambient) * kGroundAlbedo,
                                 kHazeScaleHeight_m);
     u.haze_color = glm::vec4(horizon, 0);
-    u.haze_sunward = glm::vec4(glow, 6.0f);
+    u.haze_sunward = glm::vec4(glow, 0);
 }
 
 }  // namespace loam

@@ -10,7 +10,8 @@ namespace loam {
 struct SunSky {
     double azimuth_rad = 3.9;    // clockwise from north
     double elevation_rad = 0.6;  // above the horizon
-    double haze_per_km = 0.03;
+    double haze_per_km = 0.045;  // extinction at height 0
+    double eye_height_m = 0;
 };
 
 // Direction to the sun.

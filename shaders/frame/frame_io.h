@@ -15,14 +15,12 @@ struct FrameUniforms {
     vec4 sun_direction;      // to the sun, w: cosine of its angular radius
     vec4 sun_irradiance;     // linear RGB on a surface facing the sun, w: exposure
     vec4 sun_above;          // linear RGB above the atmosphere (scales sky_radiance), w: unused
-    vec4 sky_ambient;        // linear RGB irradiance / pi of the open sky on level ground, w: haze extinction 1/m at height 0
+    vec4 sky_ambient;        // linear RGB irradiance / pi of the open sky on level ground, w: haze extinction 1/m at the eye's height
     vec4 ground_bounce;      // linear RGB irradiance / pi from below, w: haze scale height m
     vec4 haze_color;         // linear RGB radiance of thick haze away from the sun, w: unused
-    vec4 haze_sunward;       // linear RGB added around the sun, w: exponent of its lobe
+    vec4 haze_sunward;       // linear RGB added around the sun, w: unused
     vec2 picture_px;         // size of the picture rendered
     vec2 inv_picture_px;
-    float camera_z_m;        // height of the camera above 0
-    float near_m;
     uint frame;
     uint flags;
     vec4 light_x, light_y, light_z;  // rows of the light's axes (x, y across, z to the sun); w: unused

@@ -19,7 +19,7 @@ void main() {
     float disc = smoothstep(u.sun_direction.w - 4e-5, u.sun_direction.w, cos_sun);
     color += u.sun_irradiance.rgb * (disc * 30.0);
     // Below the horizon, beyond the map's edge: haze over a ground too far to see, darker the less air lies before it.
-    vec3 haze = u.haze_color.rgb + u.haze_sunward.rgb * pow(max(cos_sun, 0.0), u.haze_sunward.w);
+    vec3 haze = u.haze_color.rgb + u.haze_sunward.rgb * sunward_lobe(cos_sun);
     vec3 below = mix(haze, u.ground_bounce.rgb * 0.8 + haze * 0.12, smoothstep(0.0, 0.5, -direction.z));
     color = mix(color, below, smoothstep(0.004, -0.012, direction.z));
     out_color = vec4(to_screen(u, color), 1.0);

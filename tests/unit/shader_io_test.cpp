@@ -72,8 +72,8 @@ TEST(ShaderIo, FrameUniforms) {
                   {AT(FrameUniforms, clip_from_rel), AT(FrameUniforms, rel_from_clip), AT(FrameUniforms, sun_direction),
                    AT(FrameUniforms, sun_irradiance), AT(FrameUniforms, sun_above), AT(FrameUniforms, sky_ambient),
                    AT(FrameUniforms, ground_bounce), AT(FrameUniforms, haze_color), AT(FrameUniforms, haze_sunward),
-                   AT(FrameUniforms, picture_px), AT(FrameUniforms, inv_picture_px), AT(FrameUniforms, camera_z_m),
-                   AT(FrameUniforms, near_m), AT(FrameUniforms, frame), AT(FrameUniforms, flags), AT(FrameUniforms, light_x),
+                   AT(FrameUniforms, picture_px), AT(FrameUniforms, inv_picture_px),
+                   AT(FrameUniforms, frame), AT(FrameUniforms, flags), AT(FrameUniforms, light_x),
                    AT(FrameUniforms, light_y), AT(FrameUniforms, light_z), AT(FrameUniforms, cascade),
                    AT(FrameUniforms, cascade_depth)});
 }
