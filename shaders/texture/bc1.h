@@ -1,7 +1,7 @@
 // BC1 (DXT1) of a 4×4 block: principal axis by power iteration, then endpoints refined by least squares against the indices
-// they led to, twice; the best of the three attempts is kept.
+// they led to, three times; the best attempt is kept, and beside them one colour for the whole block.
 // Sources: the method of stb_dxt and of Simon Brown's "DXT Compression Techniques"; written anew.
-// Differences: no tables for flat blocks; a flat block picks, a channel, the best of the four thirds between two neighbouring
+// Differences: no tables for the one colour, which picks, a channel, the best of the four thirds between two neighbouring
 // endpoint values (error at most 1.5/255 in 5-bit channels, 0 where 5:6:5 holds the colour).
 //
 // Colours are 0…1. Channels are scaled by the square roots of the weights, so that plain distance is the weighted error.
@@ -27,6 +27,8 @@ LOAM_INLINE vec3 bc1_unpack565(uint c) {
     uint r = c >> 11u & 31u, g = c >> 5u & 63u, b = c & 31u;
     return vec3(float(r << 3u | r >> 2u), float(g << 2u | g >> 4u), float(b << 3u | b >> 2u)) * (1.0f / 255.0f);
 }
+
+#define kBc1Refinements 3
 
 struct Bc1Try {
     uint c0, c1;
@@ -110,6 +112,23 @@ LOAM_INLINE vec2 bc1_flat_channel(float v, float levels) {
     return vec2(low + x, low + y) / levels;
 }
 
+// All texels one third along a segment that meets their mean: what blocks with less contrast than the endpoints' steps want.
+LOAM_INLINE Bc1Try bc1_flat(LOAM_BLOCK_IN(texels), vec3 e0, vec3 e1, vec3 root_weights) {
+    Bc1Try t;
+    t.c0 = bc1_pack565(e0);
+    t.c1 = bc1_pack565(e1);
+    t.thirds_lo = 0x5555u;
+    t.thirds_hi = 0x5555u;
+    t.error = 0.0f;
+    vec3 a = bc1_unpack565(t.c0);
+    vec3 shown = a + (bc1_unpack565(t.c1) - a) * (1.0f / 3.0f);
+    for (int i = 0; i < 16; ++i) {
+        vec3 rest = (texels[i] - shown) * root_weights;
+        t.error += dot(rest, rest);
+    }
+    return t;
+}
+
 LOAM_INLINE uvec2 bc1_finish(Bc1Try t) {
     uint c0 = t.c0, c1 = t.c1;
     uint lo = t.thirds_lo, hi = t.thirds_hi;
@@ -130,12 +149,8 @@ LOAM_INLINE uvec2 bc1_finish(Bc1Try t) {
 
 LOAM_INLINE uvec2 bc1_encode(LOAM_BLOCK_IN(texels), vec3 weights) {
     vec3 root_weights = vec3(sqrt(weights.x), sqrt(weights.y), sqrt(weights.z));
-    vec3 mean = vec3(0.0f), low = texels[0], high = texels[0];
-    for (int i = 0; i < 16; ++i) {
-        mean += texels[i];
-        low = min(low, texels[i]);
-        high = max(high, texels[i]);
-    }
+    vec3 mean = vec3(0.0f);
+    for (int i = 0; i < 16; ++i) mean += texels[i];
     mean *= 1.0f / 16.0f;
     // Covariance: xx xy xz, yy yz zz.
     vec3 c_diagonal = vec3(0.0f), c_side = vec3(0.0f);
@@ -167,22 +182,14 @@ LOAM_INLINE uvec2 bc1_encode(LOAM_BLOCK_IN(texels), vec3 weights) {
         e1 = along > farthest ? texels[i] : e1;
         farthest = max(farthest, along);
     }
-    vec3 range = high - low;
-    bool flat_block = max(max(range.x, range.y), range.z) < 1.0f / 512.0f;
     vec2 fx = bc1_flat_channel(mean.x, 31.0f), fy = bc1_flat_channel(mean.y, 63.0f), fz = bc1_flat_channel(mean.z, 31.0f);
-    e0 = flat_block ? vec3(fx.x, fy.x, fz.x) : e0;
-    e1 = flat_block ? vec3(fx.y, fy.y, fz.y) : e1;
-
-    Bc1Try first = bc1_try(texels, e0, e1, root_weights);
-    // The exact third: projection would do as well, but a mixed pair of endpoints may lie off the colour's line.
-    if (flat_block) {
-        first.thirds_lo = 0x5555u;
-        first.thirds_hi = 0x5555u;
-        first.error = 0.0f;
+    Bc1Try best = bc1_flat(texels, vec3(fx.x, fy.x, fz.x), vec3(fx.y, fy.y, fz.y), root_weights);
+    Bc1Try next = bc1_try(texels, e0, e1, root_weights);
+    best = bc1_better(best, next);
+    for (int i = 0; i < kBc1Refinements; ++i) {
+        next = bc1_refine(texels, next, root_weights);
+        best = bc1_better(best, next);
     }
-    Bc1Try second = bc1_refine(texels, first, root_weights);
-    Bc1Try best = bc1_better(first, second);
-    best = bc1_better(best, bc1_refine(texels, second, root_weights));
     return bc1_finish(best);
 }
 
