@@ -18,6 +18,7 @@ const std::vector<BenchName>& benches() {
         {"compose", "pages and rectangles composed; the parts of an edit's cost", bench_compose},
         {"crater", "one crater on a 1 km and on a 16 km map: pages, milliseconds, memory", bench_crater},
         {"edit", "pages and milliseconds of a dab, a footprint and a crater", bench_edit},
+        {"encoders", "quality of the page encoder beside other block compressors", bench_encoders},
         {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
         {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},
         {"resolve", "the resolve alone against three bilinear samples with the same light", bench_resolve},

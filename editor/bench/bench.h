@@ -39,6 +39,7 @@ Result<BenchReport> bench_accuracy(const BenchRequest& request);
 Result<BenchReport> bench_compose(const BenchRequest& request);
 Result<BenchReport> bench_crater(const BenchRequest& request);
 Result<BenchReport> bench_edit(const BenchRequest& request);
+Result<BenchReport> bench_encoders(const BenchRequest& request);
 Result<BenchReport> bench_frame(const BenchRequest& request);
 Result<BenchReport> bench_ground(const BenchRequest& request);
 Result<BenchReport> bench_resolve(const BenchRequest& request);

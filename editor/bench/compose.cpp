@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "editor/bench/bench.h"
+#include "editor/bench/stage.h"
 #include "runtime/texture/composer.h"
 #include "runtime/texture/virtual_texture.h"
 
@@ -14,50 +15,6 @@ namespace {
 
 constexpr int kRepeats = 15;
 constexpr double kPixelsPerRadian = 500;  // about 960x540
-
-struct Stage {
-    gpu::Device& device;
-    Document& document;
-    std::unique_ptr<gpu::FrameRing> ring;
-    std::unique_ptr<LayerSet> layers;
-    std::unique_ptr<IndexMap> index;
-    uint64_t frame = 0;
-
-    static Result<Stage> create(gpu::Device& device, Document& document) {
-        Stage stage{device, document, {}, {}, {}};
-        auto ring = gpu::FrameRing::create(device, 2);
-        if (!ring) return ring.error();
-        stage.ring = std::move(*ring);
-        auto layers = LayerSet::create(*stage.ring, document);
-        if (!layers) return layers.error();
-        stage.layers = std::move(*layers);
-        auto index = IndexMap::create(&device, document, {});
-        if (!index) return index.error();
-        stage.index = std::move(*index);
-        return stage;
-    }
-    // Milliseconds of recording and from submit to fence.
-    Result<glm::dvec2> timed_frame(const std::function<Status(gpu::Commands&)>& record) {
-        auto begun = ring->begin();
-        if (!begun) return begun.error();
-        const double start_ms = now_ms();
-        LOAM_TRY(record((*begun)->commands));
-        const double recorded_ms = now_ms();
-        LOAM_TRY(ring->finish(**begun));
-        return glm::dvec2(recorded_ms - start_ms, now_ms() - recorded_ms);
-    }
-    Status make_resident(const MapPage& page) {
-        for (int i = 0; i < 50; ++i) {
-            auto ms = timed_frame([&](gpu::Commands& commands) {
-                index->request(page, 1e6f);
-                return index->update(*ring, commands, ++frame, 8);
-            });
-            if (!ms) return ms.error();
-            if (index->resident_page(page) && !index->has_work()) return {};
-        }
-        return error("an index page did not become resident");
-    }
-};
 
 // Mean number of layers that meet at a texel of the page.
 double layers_met(const IndexTexel* texels) {
@@ -212,6 +169,14 @@ Status bench_edits(Stage& stage, PageFormat format, BenchTable& table) {
             for (frames = 1; texture.statistics().dirty_pages > 0 && frames < 100; ++frames)
                 if (auto more = frame(nullptr, nullptr); !more) return more.error();
             after = texture.statistics();
+            // Back to the ground before: edits must not pile up.
+            auto undone = stage.document.apply({UndoCommand{}});
+            if (!undone) return undone.error();
+            stage.index->on_dirt(undone->index);
+            texture.on_index_dirt(undone->index);
+            texture.on_dirt(undone->texture);
+            for (int k = 0; k == 0 || (texture.statistics().dirty_pages > 0 && k < 100); ++k)
+                if (auto more = frame(nullptr, nullptr); !more) return more.error();
             for (int k = 0; k < 2; ++k) {
                 auto none = frame(nullptr, nullptr);
                 if (!none) return none.error();

@@ -40,10 +40,6 @@ uint32_t encoded_units(const TexelRect& rect, PageFormat format) {
     return units;
 }
 
-// Normals and gloss carry the picture; occlusion, metalness and feature bear more error. By eye on rock and
-// grass.
-constexpr glm::vec4 kWeights[3] = {{1, 1, 1, 0}, {0.7f, 1, 0.4f, 0}, {0.5f, 1, 0.3f, 0}};
-
 }  // namespace
 
 struct Composer::Placed {
@@ -350,7 +346,8 @@ void Composer::cmd_encode(gpu::Commands& commands, const Work& work) {
                                      {2, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
                                      {3, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes}});
         commands.push(encode_[mip], shared::EncodePush{.tile_count = work.tile_count,
-                                                       .weights = {kWeights[0], kWeights[1], kWeights[2]}});
+                                                       .weights = {kEncoderWeights[0], kEncoderWeights[1],
+                                                                   kEncoderWeights[2]}});
         // Threads a group and units a tile, as the two shaders have them.
         const bool bc1 = format_ == PageFormat::bc1x3;
         const uint32_t threads = bc1 ? 8 : 64, units = !bc1 ? 16 : mip == 0 ? 4 : 1;

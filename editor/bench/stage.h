@@ -1,0 +1,56 @@
+// Index pages, layers and frames without a renderer: for benches of composition alone.
+#pragma once
+
+#include <functional>
+
+#include "editor/bench/bench.h"
+#include "runtime/maps/index_map.h"
+#include "runtime/texture/layer_set.h"
+
+namespace loam::bench {
+
+struct Stage {
+    gpu::Device& device;
+    Document& document;
+    std::unique_ptr<gpu::FrameRing> ring;
+    std::unique_ptr<LayerSet> layers;
+    std::unique_ptr<IndexMap> index;
+    uint64_t frame = 0;
+
+    static Result<Stage> create(gpu::Device& device, Document& document) {
+        Stage stage{device, document, {}, {}, {}};
+        auto ring = gpu::FrameRing::create(device, 2);
+        if (!ring) return ring.error();
+        stage.ring = std::move(*ring);
+        auto layers = LayerSet::create(*stage.ring, document);
+        if (!layers) return layers.error();
+        stage.layers = std::move(*layers);
+        auto index = IndexMap::create(&device, document, {});
+        if (!index) return index.error();
+        stage.index = std::move(*index);
+        return stage;
+    }
+    // Milliseconds of recording and from submit to fence.
+    Result<glm::dvec2> timed_frame(const std::function<Status(gpu::Commands&)>& record) {
+        auto begun = ring->begin();
+        if (!begun) return begun.error();
+        const double start_ms = now_ms();
+        LOAM_TRY(record((*begun)->commands));
+        const double recorded_ms = now_ms();
+        LOAM_TRY(ring->finish(**begun));
+        return glm::dvec2(recorded_ms - start_ms, now_ms() - recorded_ms);
+    }
+    Status make_resident(const MapPage& page) {
+        for (int i = 0; i < 50; ++i) {
+            auto ms = timed_frame([&](gpu::Commands& commands) {
+                index->request(page, 1e6f);
+                return index->update(*ring, commands, ++frame, 8);
+            });
+            if (!ms) return ms.error();
+            if (index->resident_page(page) && !index->has_work()) return {};
+        }
+        return error("an index page did not become resident");
+    }
+};
+
+}  // namespace loam::bench
