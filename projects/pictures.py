@@ -59,9 +59,9 @@ def main(source, out):
             picture(project, look(project, (3000, 1200), (2600, 1900), 60), f"{out}/ridge.jpg")
             for i, (x, y, r) in enumerate([(2040, 1905, 14), (2075, 1935, 6), (2010, 1940, 9), (2120, 1990, 22)]):
                 project.apply({"cmd": "crater", "x": x, "y": y, "radius_m": r, "seed": 3 + i})
-            walk(project, (2012, 1862), (2034, 1886))
-            picture(project, look(project, (2008, 1852), (2052, 1915), 7), f"{out}/craters.jpg")
-            picture(project, look(project, (2016, 1864.5), (2023, 1874), 1.7), f"{out}/footprints.jpg")
+            walk(project, (2004.5, 1855), (2034, 1886))
+            picture(project, look(project, (1985, 1850), (2052, 1915), 24), f"{out}/craters.jpg")
+            picture(project, look(project, (2005.6, 1853.6), (2010, 1861), 1.7, fov=60), f"{out}/footprints.jpg")
             picture(project, look(project, (2000, 1500), (2260, 3000), 150, 40), f"{out}/pages.jpg", debug="mips")
 
 
