@@ -13,7 +13,9 @@ constexpr std::array<double, kCascadeCount> kHalf_m = {40.0, 160.0, 640.0, 4096.
 constexpr double kWander = 0.3;
 // Light-space depth range. A float around 0.5 has steps of 2^-24, so 4 mm.
 constexpr double kDepthRange_m = 65536.0;
-constexpr float kNormalBias_texels = 1.6f;
+// A tap reads at most 1.2 * |(0.4, 1)| + sqrt(2) texels beside its point (lighting.glsl), and a plane rises there by that
+// times the tangent of its angle to the light. Moved along its normal by this times the sine it lies above its own texels.
+constexpr float kNormalBias_texels = 2.75f;
 
 }  // namespace
 

@@ -15,12 +15,13 @@ struct Surface {
 float sun_visibility(FrameUniforms u, sampler2DShadow shadow_atlas, vec3 rel_m, vec3 normal, bool fine) {
     vec3 light = vec3(dot(u.light_x.xyz, rel_m), dot(u.light_y.xyz, rel_m), dot(u.light_z.xyz, rel_m));
     vec3 tilt = vec3(dot(u.light_x.xyz, normal), dot(u.light_y.xyz, normal), dot(u.light_z.xyz, normal));
+    vec3 away = tilt * length(tilt.xy);
     // The finest cascade that contains the point; selects instead of branches, as branches skip no work on SIMD.
     vec3 best = vec3(0.0, 0.0, 1.0);
     vec2 origin = vec2(0.0);
     float valid = 0.0;
     for (int i = kCascadeCount - 1; i >= 0; --i) {
-        vec3 moved = light + tilt * u.cascade_depth[i].z;
+        vec3 moved = light + away * u.cascade_depth[i].z;
         vec2 p = (moved.xy - u.cascade[i].xy) * u.cascade[i].z;
         bool inside = max(abs(p.x), abs(p.y)) < 0.985 && u.cascade_depth[i].w > 0.0;
         best = inside ? vec3(p * 0.5 + 0.5, moved.z * u.cascade_depth[i].x + u.cascade[i].w) : best;
