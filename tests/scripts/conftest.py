@@ -95,3 +95,24 @@ def read_png16(path):
     """Samples of a 16-bit grey PNG, through Pillow where it is, else skipped."""
     image = pytest.importorskip("PIL.Image")
     return np.asarray(image.open(path)).astype(np.int64)
+
+
+def make_flat(template, path, side_m, height_m=100.0):
+    """A flat, empty map of any size with the layers of `template`. All of them repeat in a whole share of 64 m."""
+    import re
+    import sqlite3
+    shutil.copytree(template, path)
+    project = (path / "project.toml").read_text()
+    spacing_m = float(re.search(r"height_spacing_m = ([\d.]+)", project)[1])
+    samples, height_mm = int(side_m / spacing_m) + 1, int(height_m * 1000)
+    project = re.sub(r"height_samples = \[.*?\]", f"height_samples = [{samples}, {samples}]", project)
+    project = re.sub(r"default_height_mm = \S+", f"default_height_mm = {height_mm}", project)
+    (path / "project.toml").write_text(project.replace("tile_m = 3.0", "tile_m = 4.0"))
+    database = sqlite3.connect(path / "terrain.db")
+    with database:
+        database.execute("DELETE FROM page")
+        for name, value in (("height_pages", 0), ("index_pages", 0), ("height_samples_x", samples),
+                            ("height_samples_y", samples), ("default_height_mm", height_mm)):
+            database.execute("UPDATE meta SET value = ? WHERE name = ?", (value, name))
+    database.close()
+    return path
