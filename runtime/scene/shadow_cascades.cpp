@@ -11,6 +11,9 @@ namespace {
 constexpr std::array<double, kCascadeCount> kHalf_m = {40.0, 160.0, 640.0, 4096.0};
 // The camera may wander this share of a cascade's half size before the cascade is drawn again.
 constexpr double kWander = 0.3;
+// While things move a cascade that shows another cut of the ground than the picture is kept this long: pages arrive in most
+// frames then, and each would cost a cascade.
+constexpr uint64_t kCutPatience_frames = 12;
 // Light-space depth range. A float around 0.5 has steps of 2^-24, so 4 mm.
 constexpr double kDepthRange_m = 65536.0;
 // A tap reads at most 1.2 * |(0.4, 1)| + sqrt(2) texels beside its point (lighting.glsl), and a plane rises there by that
@@ -60,6 +63,7 @@ bool ShadowCascades::is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_
     if (!c.valid || c.dirty) return true;
     // A still picture must not depend on how the camera came to its place.
     if (refine) return c.cut_hash != cut_hash || c.center_m != snapped(c, eye_m);
+    if (c.cut_hash != cut_hash && update_ - c.drawn_in >= kCutPatience_frames) return true;
     const glm::dvec2 moved = glm::abs(eye_m - c.center_m);
     return std::max(moved.x, moved.y) > c.half_m * kWander;
 }
@@ -73,6 +77,7 @@ Status ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const
     c.valid = true;
     c.dirty = false;
     c.cut_hash = patches.cut_hash;
+    c.drawn_in = update_;
 
     const glm::dvec2 center = c.center_m - eye;
     const glm::dmat4 clip_from_rel = glm::transpose(
@@ -105,11 +110,15 @@ Status ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, con
     }
 
     const glm::dvec2 eye(glm::dot(axes_.x, camera_m), glm::dot(axes_.y, camera_m));
+    ++update_;
     drawn_ = 0;
     settled_ = true;
     bool opened = false;
     for (int i = 0; i < kCascadeCount; ++i) {
-        if (!is_stale(cascades_[size_t(i)], eye, patches.cut_hash, refine)) continue;
+        if (!is_stale(cascades_[size_t(i)], eye, patches.cut_hash, refine)) {
+            settled_ = settled_ && cascades_[size_t(i)].cut_hash == patches.cut_hash;
+            continue;
+        }
         if (int(drawn_) >= budget) {
             settled_ = false;
             continue;

@@ -41,6 +41,7 @@ class ShadowCascades {
         double z_m = 0;          // light-space height of depth 0.5
         double half_m = 0;
         uint64_t cut_hash = 0;
+        uint64_t drawn_in = 0;  // which update
     };
     struct Axes {
         glm::dvec3 x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1};
@@ -57,6 +58,7 @@ class ShadowCascades {
     uint32_t texels_ = 1024;
     std::array<Cascade, kCascadeCount> cascades_;
     Axes axes_;
+    uint64_t update_ = 0;
     bool settled_ = false;
     uint32_t drawn_ = 0;
 };
