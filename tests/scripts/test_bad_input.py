@@ -70,18 +70,57 @@ def test_a_file_where_the_project_should_be(tmp_path):
     fails_with_one_sentence(run_loam("new", tmp_path / "file", "--recipe", "plain", "--size", 64))
 
 
-@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
-def test_a_read_only_folder(plain, tmp_path):
-    locked = tmp_path / "locked"
+@pytest.fixture
+def open_folder():
+    """A folder that any user may enter: pytest's own is closed to others."""
+    import shutil
+    import tempfile
+    from pathlib import Path
+    path = Path(tempfile.mkdtemp(prefix="loam_read_only_"))
+    path.chmod(0o755)
+    yield path
+    for folder in [path, *(f for f in path.rglob("*") if f.is_dir())]:
+        folder.chmod(0o700)
+    shutil.rmtree(path)
+
+
+def run_unprivileged(*words):
+    """Root may write everywhere, so the program runs as nobody (65534) then."""
+    return run_loam(*words, **({"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}))
+
+
+def test_a_read_only_folder(plain, open_folder):
+    import shutil
+    try:
+        if run_unprivileged("--help").returncode != 0:
+            pytest.skip("the program does not run as another user")
+    except PermissionError:
+        pytest.skip("another user may not run the program")
+    locked, project, script = open_folder / "locked", open_folder / "plain", open_folder / "s.jsonl"
     locked.mkdir()
-    locked.chmod(0o500)
-    fails_with_one_sentence(run_loam("new", locked / "project", "--recipe", "plain", "--size", 64))
-    script = tmp_path / "s.jsonl"
+    locked.chmod(0o555)
+    write_png16(open_folder / "h.png", np.arange(64).reshape(8, 8) * 900)
+    shutil.copytree(plain, project)
     script.write_text('{"cmd":"crater","x":50,"y":50,"radius_m":5,"seed":1}\n')
-    for path in [plain, *plain.iterdir()]:
-        path.chmod(0o500 if path.is_dir() else 0o400)
-    fails_with_one_sentence(run_loam("replay", plain, script))
-    plain.chmod(0o700)
+    for path in (open_folder / "h.png", script):
+        path.chmod(0o444)
+    for path in [*project.rglob("*"), project]:
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    before = (project / "terrain.db").read_bytes()
+    assert "locked" in fails_with_one_sentence(
+        run_unprivileged("new", locked / "project", "--recipe", "plain", "--size", 64, "--layer-size", 64))
+    assert "locked" in fails_with_one_sentence(
+        run_unprivileged("import", open_folder / "h.png", locked / "p", "--range", 0, 1, "--layer-size", 0))
+    assert str(project) in fails_with_one_sentence(run_unprivileged("replay", project, script))
+    assert list(locked.iterdir()) == [] and (project / "terrain.db").read_bytes() == before
+    # What only reads works there.
+    assert run_unprivileged("info", project).returncode == 0
+
+
+def test_a_picture_into_a_missing_or_read_only_place(plain, tmp_path, has_device):
+    (tmp_path / "file").write_text("x")
+    for out in (tmp_path / "no folder" / "o.png", tmp_path / "file" / "o.png"):
+        assert "o.png" in fails_with_one_sentence(run_loam("render", plain, "-o", out, "--size", "64x36", "--max-frames", 2))
 
 
 def test_a_picture_in_colour_and_one_that_is_too_large(tmp_path):
