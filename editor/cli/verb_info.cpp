@@ -1,36 +1,10 @@
-#include <vulkan/vulkan.h>
-
 #include "editor/cli/verb.h"
 #include "editor/report.h"
+#include "runtime/gpu/device.h"
 
 namespace loam::cli {
 
 namespace {
-
-// Names of all Vulkan devices, in the order that --device numbers them; empty when there is no Vulkan.
-std::vector<std::string> device_names() {
-    VkApplicationInfo application{};
-    application.sType = VK_STRUCTURE_TYPE_APPLICATION_INFO;
-    application.apiVersion = VK_API_VERSION_1_3;
-    VkInstanceCreateInfo info{};
-    info.sType = VK_STRUCTURE_TYPE_INSTANCE_CREATE_INFO;
-    info.pApplicationInfo = &application;
-    VkInstance instance = VK_NULL_HANDLE;
-    if (vkCreateInstance(&info, nullptr, &instance) != VK_SUCCESS) return {};
-    uint32_t count = 0;
-    std::vector<std::string> names;
-    if (vkEnumeratePhysicalDevices(instance, &count, nullptr) == VK_SUCCESS) {
-        std::vector<VkPhysicalDevice> devices(count);
-        vkEnumeratePhysicalDevices(instance, &count, devices.data());
-        for (VkPhysicalDevice device : devices) {
-            VkPhysicalDeviceProperties properties{};
-            vkGetPhysicalDeviceProperties(device, &properties);
-            names.emplace_back(properties.deviceName);
-        }
-    }
-    vkDestroyInstance(instance, nullptr);
-    return names;
-}
 
 void print_tree(const Json& json, int indent) {
     for (const auto& [key, value] : json.items()) {
@@ -62,7 +36,7 @@ Result<Json> report_of(const Args& args) {
     Json json;
     json["settings"] = to_report((*session)->document().settings());
     json["statistics"] = to_report((*session)->document().statistics());
-    json["devices"] = device_names();
+    json["devices"] = gpu::device_names();
     if (!args.has("--gpu")) return json;
     const PixelSize size = args.size("--size", {960, 540});
     LOAM_TRY((*session)->step((*session)->default_camera(), size.width, size.height, {}, 8));

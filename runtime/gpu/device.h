@@ -129,6 +129,9 @@ class Device {
 // Of all devices of this process, those already destroyed included: what leaks shows at destruction.
 [[nodiscard]] uint32_t total_validation_messages();
 
+// Names of all Vulkan devices, in the order that DeviceDesc::device_filter numbers them; empty when there is no Vulkan.
+[[nodiscard]] std::vector<std::string> device_names();
+
 // One sentence for a Vulkan failure: "vkCreateImage failed: out of device memory".
 [[nodiscard]] Error vk_error(std::string_view what, VkResult result);
 

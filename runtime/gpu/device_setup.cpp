@@ -252,4 +252,22 @@ Result<VkDevice> create_logical(const PhysicalSetup& setup, const DeviceDesc& de
     return device;
 }
 
+std::vector<std::string> device_names() {
+    auto setup = create_instance({});
+    if (!setup) return {};
+    uint32_t count = 0;
+    std::vector<std::string> names;
+    if (vkEnumeratePhysicalDevices(setup->instance, &count, nullptr) == VK_SUCCESS) {
+        std::vector<VkPhysicalDevice> devices(count);
+        vkEnumeratePhysicalDevices(setup->instance, &count, devices.data());
+        for (VkPhysicalDevice device : devices) {
+            VkPhysicalDeviceProperties properties{};
+            vkGetPhysicalDeviceProperties(device, &properties);
+            names.emplace_back(properties.deviceName);
+        }
+    }
+    vkDestroyInstance(setup->instance, nullptr);
+    return names;
+}
+
 }  // namespace loam::gpu
