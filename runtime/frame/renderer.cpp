@@ -144,7 +144,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::Fra
         TerrainPass::create(device, {kGbufferFormat, kOcclusionFormat}, device.caps().depth_stencil);
     if (!terrain) return terrain.error();
     r.terrain = std::make_unique<TerrainPass>(std::move(*terrain));
-    auto shadows = ShadowCascades::create(device, r.defaults.shadow_texels);
+    auto shadows = ShadowCascades::create(device, desc.shadows ? r.defaults.shadow_texels : 1);
     if (!shadows) return shadows.error();
     r.shadows = std::make_unique<ShadowCascades>(std::move(*shadows));
     LOAM_TRY(r.make_pipelines());
