@@ -68,6 +68,13 @@ def changed_share(before, after, center, half=12):
     return changed / count
 
 
+def keep(name, picture):
+    """In the build folder, to look at when a comparison fails."""
+    folder = pathlib.Path(os.environ.get("LOAM_BINARY_DIR", ".")) / "window"
+    folder.mkdir(exist_ok=True)
+    picture.save(folder / name)
+
+
 def away(display, window):
     """The cursor off the viewport, so that no brush outline is in the picture."""
     display.xdotool("mousemove", 400, 10)
@@ -132,6 +139,8 @@ def test_paint_crater_undo_save_close_reopen(display, project, opened, tmp_path)
     again = opened()
     away(display, again)
     reopened = display.screenshot()
+    keep("saved.png", saved)
+    keep("reopened.png", reopened)
     for share in ((0.5, 0.55), (0.5, 0.70), (0.5, 0.85)):
         assert changed_share(saved, reopened, place(again, *share), half=30) < 0.01
     closed_cleanly(again, display)
