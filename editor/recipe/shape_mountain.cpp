@@ -79,7 +79,7 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
             const Drainage drainage = route(shape.height_m, spacing, plan.outlets, wander);
             incise(shape.height_m, drainage, spacing, incision);
             if (level > 0)
-                creep(shape.height_m, spacing, (level == 3 ? 2.0f : level == 2 ? 0.6f : 0.05f) * dx * dx);
+                creep(shape.height_m, spacing, (level == 3 ? 2.0f : level == 2 ? 0.9f : 0.1f) * dx * dx);
         }
         if (level == std::min(1, coarsest)) {
             LOAM_TRY(step_progress(progress, 0.4, "filling valley floors"));
@@ -104,7 +104,7 @@ Result<Shape> carve(const ShapeRequest& request, const MountainPlan& plan, const
             weather(shape.height_m, shape.deposit_m, spacing,
                     {.repose = 0.62f, .rock_limit = 0.68f, .crumble = 0.05f, .strength = &strength},
                     level == 1 ? 60 : 40);
-            creep(shape.height_m, spacing, (level == 1 ? 0.1f : 0.04f) * dx * dx);
+            creep(shape.height_m, spacing, (level == 1 ? 0.35f : 0.3f) * dx * dx);
         }
     }
     LOAM_TRY(step_progress(progress, 1.0, "ground shaped"));
