@@ -16,7 +16,8 @@ void main() {
     vec2 offset_m;
     vt_split(p.rel_m.xy, sector, offset_m);
     VtSample t = vt_sample(sector, offset_m, p.log2_long, p.log2_short);
-    Surface s = Surface(t.albedo, bent_normal(p.ground, t.normal), t.gloss, t.occlusion, t.metalness);
+    VtMaterial m = t.material;
+    Surface s = Surface(m.albedo, bent_normal(p.ground, m.normal), m.gloss, m.occlusion, m.metalness);
     vec3 color = lit_pixel(p, s);
     if (kDebug) color = debug_color(p, s, t, color);
     out_color = vec4(color, 1.0);

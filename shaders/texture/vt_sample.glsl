@@ -15,20 +15,14 @@
 //     VtSample s = vt_sample(sector, offset, g.z, g.w);  // log2 footprints in metres from the g-buffer
 #ifndef LOAM_TEXTURE_VT_SAMPLE_GLSL
 #define LOAM_TEXTURE_VT_SAMPLE_GLSL
+#include "shaders/texture/vt_fetch.glsl"
 #include "shaders/texture/vt_place.glsl"
 
 layout(constant_id = 20) const bool kVtTrilinear = false;
 layout(binding = VT_FIRST_SLOT + 2) uniform usampler2D vt_indirection;
-layout(binding = VT_FIRST_SLOT + 3) uniform sampler2D vt_atlas0;
-layout(binding = VT_FIRST_SLOT + 4) uniform sampler2D vt_atlas1;
-layout(binding = VT_FIRST_SLOT + 5) uniform sampler2D vt_atlas2;
 
 struct VtSample {
-    vec3 albedo;      // linear
-    vec2 normal;      // x, y of the material in the frame of the ground; z is positive
-    float gloss;
-    float occlusion;
-    float metalness;
+    VtMaterial material;
     // For debug views; costs nothing where unused.
     uint word;        // indirection texel
     uint id;          // sector id
@@ -47,21 +41,10 @@ VtSample vt_sample(ivec2 sector_delta, vec2 offset_m, float log2_long, float log
     vec2 uv = (page + in_page * (float(kPagePayload) / float(kPageTexels)) + float(kPageBorder) / float(kPageTexels)) *
               vt.inv_atlas_pages;
     float lod = clamp(place.wanted - float(mip), 0.0, 1.0);
-    float first = kVtTrilinear ? 0.0 : floor(lod + 0.5);
-    vec3 a = textureLod(vt_atlas0, uv, first).rgb;
-    vec3 b = textureLod(vt_atlas1, uv, first).rgb;
-    vec2 c = textureLod(vt_atlas2, uv, first).rg;
-    if (kVtTrilinear) {
-        a = mix(a, textureLod(vt_atlas0, uv, 1.0).rgb, lod);
-        b = mix(b, textureLod(vt_atlas1, uv, 1.0).rgb, lod);
-        c = mix(c, textureLod(vt_atlas2, uv, 1.0).rg, lod);
-    }
+    VtTexels texels = vt_fetch(uv, kVtTrilinear ? 0.0 : floor(lod + 0.5));
+    if (kVtTrilinear) texels = vt_mix(texels, vt_fetch(uv, 1.0), lod);
     VtSample s;
-    s.albedo = a * a;
-    s.gloss = b.r;
-    s.occlusion = b.b;
-    s.metalness = c.r;
-    s.normal = vec2(page_decode_normal(b.g), page_decode_normal(c.g));
+    s.material = vt_decode(texels);
     s.word = word;
     s.id = place.id;
     s.wanted_mip = place.wanted;
