@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "runtime/base/check.h"
+#include "runtime/frame/resolve_pass.h"
 #include "runtime/frame/targets.h"
 #include "runtime/geometry/patch_tree.h"
 #include "runtime/geometry/terrain_pass.h"
@@ -14,7 +15,6 @@
 #include "runtime/scene/sun_sky.h"
 #include "runtime/texture/decals.h"
 #include "runtime/texture/layer_set.h"
-#include "shaders/frame/resolve_io.h"
 
 namespace loam {
 
@@ -58,15 +58,7 @@ int pages_per_side(Quality quality) {
 // Outside the frustum the ground only casts shadows: tuned so that half the cache serves what is seen.
 constexpr double kHiddenShare = 0.4;
 
-constexpr uint32_t kMaterialSlot = 5;  // VT_FIRST_SLOT and DIRECT_FIRST_SLOT of the resolve shaders
-
 constexpr double kFrameGoal_ms = 33;  // while someone works
-
-enum class ResolveKind { fast, fine, debug, direct, direct_decals, floor, floor_fine };
-constexpr size_t kResolveKinds = 7;
-
-// The frame draws sky and ground; benches draw the ground alone, or its floor (resolve_floor.frag).
-enum class ResolvePart { all, ground, floor };
 
 // Jitter within a pixel is not another view.
 bool same_view(const Camera& a, const Camera& b) {
@@ -92,9 +84,7 @@ struct Renderer::Impl {
     std::unique_ptr<TerrainPass> terrain;
     std::unique_ptr<ShadowCascades> shadows;
     FrameTargets targets;
-    gpu::Sampler point, linear;
-    gpu::Pipeline sky;
-    gpu::Pipeline resolve[kResolveKinds];
+    std::unique_ptr<ResolvePass> resolve;
 
     uint64_t frame = 0;
     std::chrono::steady_clock::time_point frame_start = std::chrono::steady_clock::now();
@@ -109,19 +99,13 @@ struct Renderer::Impl {
     bool has_decals = false;
     shared::FrameUniforms last_uniforms{};  // for resolve_again
 
-    Status make_pipelines();
-    Result<gpu::Pipeline*> resolve_pipeline(ResolveKind kind);
     Status create_texture(gpu::FrameRing& ring);
     [[nodiscard]] shared::FrameUniforms uniforms(const Camera& camera, glm::uvec2 size,
                                                  const FrameSettings& settings) const;
     void request_direct_pages(double pixels_per_radian, double footprint_bias);
     void upload_direct_decals(gpu::FrameRing& ring, double pixels_per_radian, double footprint_bias);
-    void use_material(gpu::Commands& commands, bool direct);
-    [[nodiscard]] std::vector<gpu::Bound> cached_material() const;
-    [[nodiscard]] std::vector<gpu::Bound> direct_material() const;
     void prepass(gpu::Commands& commands, glm::uvec2 size, const shared::FrameUniforms& u);
-    Status light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& uniform_slice,
-                 const FrameSettings& settings, ResolvePart part);
+    [[nodiscard]] ResolveInputs resolve_inputs(const gpu::UploadSlice& uniform_slice);
 };
 
 Renderer::Renderer() = default;
@@ -147,7 +131,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::Fra
     auto shadows = ShadowCascades::create(device, desc.shadows ? r.defaults.shadow_texels : 1);
     if (!shadows) return shadows.error();
     r.shadows = std::make_unique<ShadowCascades>(std::move(*shadows));
-    LOAM_TRY(r.make_pipelines());
+    auto resolve = ResolvePass::create(device, *r.layers);
+    if (!resolve) return resolve.error();
+    r.resolve = std::make_unique<ResolvePass>(std::move(*resolve));
     return renderer;
 }
 
@@ -174,66 +160,6 @@ Status Renderer::settings_changed(gpu::FrameRing& ring) {
     impl_->changed = true;
     if (impl_->layers->names.size() == impl_->document.settings().layers.size()) return {};
     return impl_->create_texture(ring);
-}
-
-Status Renderer::Impl::make_pipelines() {
-    auto p = gpu::Sampler::create(device, {.filter = VK_FILTER_NEAREST});
-    if (!p) return p.error();
-    point = std::move(*p);
-    auto l = gpu::Sampler::create(device, {});
-    if (!l) return l.error();
-    linear = std::move(*l);
-    auto made = gpu::Pipeline::create(
-        device,
-        gpu::GraphicsDesc{
-            .name = "sky",
-            .vertex_shader = "frame/fullscreen.vert",
-            .fragment_shader = "frame/sky.frag",
-            .bindings = {gpu::storage_buffer(0)},
-            .color_formats = {kPictureFormat},
-            .depth_format = device.caps().depth_stencil,
-            .stencil = {
-                .enable = true, .compare = VK_COMPARE_OP_NOT_EQUAL, .reference = 1, .write_mask = 0}});
-    if (!made) return made.error();
-    sky = std::move(*made);
-    for (ResolveKind kind : {ResolveKind::fast, ResolveKind::fine})
-        if (auto pipeline = resolve_pipeline(kind); !pipeline) return pipeline.error();
-    return {};
-}
-
-Result<gpu::Pipeline*> Renderer::Impl::resolve_pipeline(ResolveKind kind) {
-    gpu::Pipeline& pipeline = resolve[size_t(kind)];
-    if (pipeline) return &pipeline;
-    const bool direct = kind == ResolveKind::direct || kind == ResolveKind::direct_decals;
-    const bool floor = kind == ResolveKind::floor || kind == ResolveKind::floor_fine;
-    gpu::GraphicsDesc d{
-        .name = direct ? "resolve direct" : "resolve",
-        .vertex_shader = "frame/fullscreen.vert",
-        .fragment_shader = direct  ? "frame/resolve_direct.frag"
-                           : floor ? "frame/resolve_floor.frag"
-                                   : "frame/resolve.frag",
-        .push_bytes = sizeof(shared::ResolvePush),
-        // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal, 22: decals.
-        .constants = {{0, kind == ResolveKind::fast || kind == ResolveKind::floor ? 0u : 1u},
-                      {1, kind == ResolveKind::debug ? 1u : 0u},
-                      {20, kind == ResolveKind::fast ? 0u : 1u},
-                      {21, layers->has_metal ? 1u : 0u},
-                      {22, kind == ResolveKind::direct_decals ? 1u : 0u}},
-        .color_formats = {kPictureFormat},
-        .depth_format = device.caps().depth_stencil,
-        .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
-    d.bindings = {gpu::storage_buffer(0), gpu::sampled_image(1), gpu::sampled_image(2), gpu::sampled_image(3),
-                  gpu::sampled_image(4)};
-    // Then the material's: shaders/texture/direct.glsl or vt_sample.glsl, from slot 5.
-    const uint32_t buffers = direct ? 3 : floor ? 0 : 2, images = direct ? 5 : floor ? 3 : 4;
-    for (uint32_t i = 0; i < buffers + images; ++i)
-        d.bindings.push_back(i < buffers ? gpu::storage_buffer(kMaterialSlot + i)
-                                         : gpu::sampled_image(kMaterialSlot + i));
-    if (direct) d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images));
-    auto made = gpu::Pipeline::create(device, d);
-    if (!made) return made.error();
-    pipeline = std::move(*made);
-    return &pipeline;
 }
 
 shared::FrameUniforms Renderer::Impl::uniforms(const Camera& camera, glm::uvec2 size,
@@ -309,96 +235,16 @@ void Renderer::Impl::upload_direct_decals(gpu::FrameRing& ring, double pixels_pe
     std::copy(found.begin(), found.end(), decals.as<shared::DirectDecal>());
 }
 
-void Renderer::Impl::use_material(gpu::Commands& commands, bool direct) {
-    if (direct)
-        commands.use({{indices->indices(), Access::fragment_sampled},
-                      {indices->tints(), Access::fragment_sampled},
-                      {indices->page_table(), Access::fragment_sampled},
-                      {texture->direct_params(), Access::fragment_sampled},
-                      {texture->direct_places(), Access::fragment_sampled},
-                      {layers->albedo_reveal, Access::fragment_sampled},
-                      {layers->normal_gloss_occlusion, Access::fragment_sampled},
-                      {layers->metalness, Access::fragment_sampled}});
-    else
-        commands.use({{texture->params(), Access::fragment_sampled},
-                      {texture->sector_table(), Access::fragment_sampled},
-                      {texture->indirection(), Access::fragment_sampled},
-                      {texture->atlas(0), Access::fragment_sampled},
-                      {texture->atlas(1), Access::fragment_sampled},
-                      {texture->atlas(2), Access::fragment_sampled}});
-}
-
-std::vector<gpu::Bound> Renderer::Impl::cached_material() const {
-    constexpr uint32_t s = kMaterialSlot;
-    return {{s, texture->params()},
-            {s + 1, texture->sector_table()},
-            {s + 2, texture->indirection().view(), texture->nearest_sampler()},
-            {s + 3, texture->atlas(0).view(), texture->sampler()},
-            {s + 4, texture->atlas(1).view(), texture->sampler()},
-            {s + 5, texture->atlas(2).view(), texture->sampler()}};
-}
-
-std::vector<gpu::Bound> Renderer::Impl::direct_material() const {
-    constexpr uint32_t s = kMaterialSlot;
-    return {{s, texture->direct_params()},
-            {s + 1, texture->direct_places()},
-            {s + 2, indices->page_table()},
-            {s + 3, indices->indices().view(), texture->nearest_sampler()},
-            {s + 4, indices->tints().view(), texture->nearest_sampler()},
-            {s + 5, layers->albedo_reveal.view(), layers->sampler},
-            {s + 6, layers->normal_gloss_occlusion.view(), layers->sampler},
-            {s + 7, layers->metalness.view(), layers->sampler},
-            {s + 8, *decals.buffer, decals.offset, decals.size_bytes}};
-}
-
-Status Renderer::Impl::light(gpu::Commands& commands, glm::uvec2 size, const gpu::UploadSlice& slice,
-                             const FrameSettings& settings, ResolvePart part) {
-    const bool floor = part == ResolvePart::floor;
-    const bool direct = settings.shading == Shading::direct;
-    const ResolveKind kind = floor ? settings.fine_filter ? ResolveKind::floor_fine : ResolveKind::floor
-                             : direct && has_decals              ? ResolveKind::direct_decals
-                             : direct                            ? ResolveKind::direct
-                             : settings.debug != DebugView::none ? ResolveKind::debug
-                             : settings.fine_filter              ? ResolveKind::fine
-                                                                 : ResolveKind::fast;
-    auto pipeline = resolve_pipeline(kind);
-    if (!pipeline) return pipeline.error();
-    use_material(commands, direct);
-
-    const auto pass = commands.pass("resolve", {{targets.picture, Access::color_target},
-                                                {targets.depth, Access::depth_sampled},
-                                                {targets.gbuffer, Access::fragment_sampled},
-                                                {targets.occlusion, Access::fragment_sampled},
-                                                {shadows->atlas(), Access::fragment_sampled}});
-    const gpu::ColorTarget colors[] = {{targets.picture.view(), VK_ATTACHMENT_LOAD_OP_DONT_CARE, {}}};
-    commands.begin_rendering({size.x, size.y}, colors,
-                             {.view = targets.depth.view(), .has_stencil = true, .read_only = true});
-    commands.set_viewport(0, 0, float(size.x), float(size.y));
-
-    const gpu::Bound frame_bound(0, *slice.buffer, slice.offset, slice.size_bytes);
-    if (part == ResolvePart::all) {
-        commands.bind(sky, {frame_bound});
-        commands.draw(3);
-    }
-
-    std::vector<gpu::Bound> bound = {
-        frame_bound,
-        {1, targets.depth.depth_view(), point, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL},
-        {2, targets.gbuffer.view(), point},
-        {3, targets.occlusion.view(), point},
-        {4, shadows->atlas().view(), shadows->sampler()},
-    };
-    std::vector<gpu::Bound> material = direct ? direct_material() : cached_material();
-    if (floor)
-        material = {{kMaterialSlot, texture->atlas(0).view(), texture->sampler()},
-                    {kMaterialSlot + 1, texture->atlas(1).view(), texture->sampler()},
-                    {kMaterialSlot + 2, texture->atlas(2).view(), texture->sampler()}};
-    bound.insert(bound.end(), material.begin(), material.end());
-    commands.bind(**pipeline, bound);
-    commands.push(**pipeline, shared::ResolvePush{uint32_t(settings.debug), settings.footprint_bias});
-    commands.draw(3);
-    commands.end_rendering();
-    return {};
+ResolveInputs Renderer::Impl::resolve_inputs(const gpu::UploadSlice& uniform_slice) {
+    return {.targets = targets,
+            .shadows = *shadows,
+            .texture = *texture,
+            .indices = *indices,
+            .layers = *layers,
+            .size = picture_size,
+            .uniforms = uniform_slice,
+            .decals = decals,
+            .has_decals = has_decals};
 }
 
 void Renderer::on_dirt(const Dirt& dirt) {
@@ -471,7 +317,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
         LOAM_TRY(r.texture->record_feedback(ring, commands, r.targets.depth, r.targets.gbuffer, *slice.buffer,
                                             slice.offset));
     // Sky, then the terrain's pixels from the virtual texture.
-    LOAM_TRY(r.light(commands, size, slice, settings, ResolvePart::all));
+    LOAM_TRY(r.resolve->cmd_record(commands, r.resolve_inputs(slice), settings, ResolvePart::all));
     r.last_uniforms = u;
     commands.use({{r.targets.picture, Access::fragment_sampled}});
 
@@ -488,8 +334,8 @@ Status Renderer::resolve_again(gpu::FrameRing& ring, gpu::Commands& commands, co
     Impl& r = *impl_;
     const gpu::UploadSlice slice = ring.upload(sizeof(r.last_uniforms));
     *slice.as<shared::FrameUniforms>() = r.last_uniforms;
-    return r.light(commands, r.picture_size, slice, settings,
-                   probe == ResolveProbe::floor ? ResolvePart::floor : ResolvePart::ground);
+    return r.resolve->cmd_record(commands, r.resolve_inputs(slice), settings,
+                                 probe == ResolveProbe::floor ? ResolvePart::floor : ResolvePart::ground);
 }
 
 gpu::Image& Renderer::picture() {

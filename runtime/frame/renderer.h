@@ -20,6 +20,7 @@
 #include "runtime/base/result.h"
 #include "runtime/document/document.h"
 #include "runtime/frame/camera.h"
+#include "runtime/frame/frame_settings.h"
 #include "runtime/gpu/frame_ring.h"
 #include "runtime/texture/virtual_texture.h"
 
@@ -32,10 +33,6 @@ enum class Quality {
     high,
     ultra
 };  // virtual texture sizes of the talk: 13², 16², 22², 30², 42² pages
-enum class Shading { virtual_texture, direct };  // direct: the reference's per-pixel evaluation
-// mips: of the page shown; indirection: the texel as a colour. Numbered as in shaders/frame/debug_view.glsl.
-enum class DebugView { none, mips, sectors, normals, occlusion, indirection, shadow, albedo };
-
 struct RendererDesc {
     Quality quality = Quality::low;
     std::optional<PageFormat> page_format;  // default by device profile
@@ -44,16 +41,6 @@ struct RendererDesc {
     int page_budget = 0;  // whole texture pages a frame; 0: by profile
     bool shadows = true;
     double patch_split_distance = 0;  // 0: by profile
-};
-
-struct FrameSettings {
-    Shading shading = Shading::virtual_texture;
-    DebugView debug = DebugView::none;
-    float render_scale = 1.0f;  // share of the picture's width and height that is shaded
-    bool fine_filter = true;    // trilinear between page mips and so on; off while moving on software devices
-    glm::dvec2 jitter_px{0, 0};
-    float footprint_bias = 0;      // direct shading: log2, negative leaves filtering to supersampling
-    int page_budget = -1;  // overrides RendererDesc::page_budget when >= 0
 };
 
 struct MemoryRow {
