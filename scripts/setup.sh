@@ -11,6 +11,7 @@ packages=(
     libfreetype-dev libharfbuzz-dev fonts-dejavu-core fonts-inter
     libgtest-dev pybind11-dev python3 python3-dev python3-numpy python3-pytest python3-pil
     xvfb xdotool x11-utils imagemagick
+    astcenc libsquish-dev libstb-dev
 )
 
 if ! command -v dpkg-query >/dev/null; then

@@ -9,12 +9,7 @@
 // unless both endpoints are equal.
 #ifndef LOAM_TEXTURE_BC1_H
 #define LOAM_TEXTURE_BC1_H
-#include "shaders/base/shared.h"
-#ifdef __cplusplus
-#define LOAM_BLOCK_IN(name) const vec3(&name)[16]
-#else
-#define LOAM_BLOCK_IN(name) in vec3 name[16]
-#endif
+#include "shaders/texture/block.h"
 LOAM_BEGIN_SHARED
 
 LOAM_INLINE uint bc1_pack565(vec3 c) {
@@ -36,7 +31,7 @@ struct Bc1Try {
     float error;
 };
 
-LOAM_INLINE Bc1Try bc1_try(LOAM_BLOCK_IN(texels), vec3 e0, vec3 e1, vec3 root_weights) {
+LOAM_INLINE Bc1Try bc1_try(LOAM_ARRAY_IN(vec3, texels, 16), vec3 e0, vec3 e1, vec3 root_weights) {
     Bc1Try t;
     t.c0 = bc1_pack565(e0);
     t.c1 = bc1_pack565(e1);
@@ -61,7 +56,7 @@ LOAM_INLINE Bc1Try bc1_try(LOAM_BLOCK_IN(texels), vec3 e0, vec3 e1, vec3 root_we
 }
 
 // Endpoints that fit the texels best with the indices of `t`; equal to its own endpoints where the system is singular.
-LOAM_INLINE Bc1Try bc1_refine(LOAM_BLOCK_IN(texels), Bc1Try t, vec3 root_weights) {
+LOAM_INLINE Bc1Try bc1_refine(LOAM_ARRAY_IN(vec3, texels, 16), Bc1Try t, vec3 root_weights) {
     float aa = 0.0f, ab = 0.0f, bb = 0.0f;
     vec3 ax = vec3(0.0f), bx = vec3(0.0f);
     for (int i = 0; i < 16; ++i) {
@@ -113,7 +108,7 @@ LOAM_INLINE vec2 bc1_flat_channel(float v, float levels) {
 }
 
 // All texels one third along a segment that meets their mean: what blocks with less contrast than the endpoints' steps want.
-LOAM_INLINE Bc1Try bc1_flat(LOAM_BLOCK_IN(texels), vec3 e0, vec3 e1, vec3 root_weights) {
+LOAM_INLINE Bc1Try bc1_flat(LOAM_ARRAY_IN(vec3, texels, 16), vec3 e0, vec3 e1, vec3 root_weights) {
     Bc1Try t;
     t.c0 = bc1_pack565(e0);
     t.c1 = bc1_pack565(e1);
@@ -147,7 +142,7 @@ LOAM_INLINE uvec2 bc1_finish(Bc1Try t) {
     return uvec2(c0 | c1 << 16u, c0 == c1 ? 0u : indices);
 }
 
-LOAM_INLINE uvec2 bc1_encode(LOAM_BLOCK_IN(texels), vec3 weights) {
+LOAM_INLINE uvec2 bc1_encode(LOAM_ARRAY_IN(vec3, texels, 16), vec3 weights) {
     vec3 root_weights = vec3(sqrt(weights.x), sqrt(weights.y), sqrt(weights.z));
     vec3 mean = vec3(0.0f);
     for (int i = 0; i < 16; ++i) mean += texels[i];

@@ -1,4 +1,4 @@
-// Mathematics shared with the shaders: one material per vertex, block compression, page placement.
+// Mathematics shared with the shaders: one material per vertex, page placement.
 #include <cmath>
 #include <random>
 
@@ -88,98 +88,6 @@ TEST(Ompv, TintDecodingIsNearTheStandardCurve) {
         const float exact = s <= 0.04045f ? s / 12.92f : std::pow((s + 0.055f) / 1.055f, 2.4f);
         EXPECT_NEAR(ompv_decode_tint(vec3(s)).x, exact, 0.003f);
     }
-}
-
-vec3 from_565(uint c) {
-    return bc1_unpack565(c);
-}
-
-TEST(Bc1, FlatColoursOf565AreExact) {
-    std::mt19937 random(3);
-    for (int n = 0; n < 500; ++n) {
-        const vec3 color = from_565(random() & 0xffff);
-        vec3 texels[16];
-        for (vec3& t : texels) t = color;
-        const uvec2 block = bc1_encode(texels, vec3(1));
-        for (int i = 0; i < 16; ++i) EXPECT_LT(glm::length(bc1_decode(block, i) - color), 1e-3f);
-    }
-}
-
-TEST(Bc1, AnyFlatColourIsWithinAThirdOfAStep) {
-    std::mt19937 random(4);
-    for (int n = 0; n < 2000; ++n) {
-        const vec3 color = vec3(float(random() % 256), float(random() % 256), float(random() % 256)) / 255.0f;
-        vec3 texels[16];
-        for (vec3& t : texels) t = color;
-        const vec3 error = glm::abs(bc1_decode(bc1_encode(texels, vec3(1)), 5) - color) * 255.0f;
-        EXPECT_LE(error.x, 1.9f);
-        EXPECT_LE(error.y, 1.2f);
-        EXPECT_LE(error.z, 1.9f);
-    }
-}
-
-TEST(Bc1, TwoColoursAreExact) {
-    std::mt19937 random(5);
-    for (int n = 0; n < 500; ++n) {
-        const vec3 a = from_565(random() & 0xffff), b = from_565(random() & 0xffff);
-        vec3 texels[16];
-        const uint32_t pattern = uint32_t(random());
-        for (int i = 0; i < 16; ++i) texels[i] = pattern >> i & 1 ? a : b;
-        const uvec2 block = bc1_encode(texels, vec3(1));
-        for (int i = 0; i < 16; ++i) EXPECT_LT(glm::length(bc1_decode(block, i) - texels[i]), 1e-3f);
-    }
-}
-
-TEST(Bc1, FourColourModeUnlessEqual) {
-    std::mt19937 random(6);
-    for (int n = 0; n < 2000; ++n) {
-        vec3 texels[16];
-        for (vec3& t : texels)
-            t = vec3(float(random() % 256), float(random() % 256), float(random() % 256)) / 255.0f;
-        const uvec2 block = bc1_encode(texels, vec3(1));
-        const uint c0 = block.x & 0xffff, c1 = block.x >> 16;
-        EXPECT_TRUE(c0 > c1 || (c0 == c1 && block.y == 0));
-    }
-}
-
-// Ground-like: three octaves of smooth noise in brightness, a little hue.
-TEST(Bc1, AGroundPageIsAbove33Decibels) {
-    std::mt19937 random(7);
-    constexpr int kSide = 128;
-    std::vector<vec3> page(kSide * kSide);
-    std::vector<float> grid(65 * 65);
-    for (float& g : grid) g = float(random() % 1000) / 1000.0f;
-    const auto noise = [&](float x, float y) {
-        const int ix = int(x), iy = int(y);
-        const float u = x - float(ix), v = y - float(iy);
-        const auto at = [&](int i, int j) { return grid[size_t(j % 65) * 65 + size_t(i % 65)]; };
-        return (at(ix, iy) * (1 - u) + at(ix + 1, iy) * u) * (1 - v) +
-               (at(ix, iy + 1) * (1 - u) + at(ix + 1, iy + 1) * u) * v;
-    };
-    for (int y = 0; y < kSide; ++y)
-        for (int x = 0; x < kSide; ++x) {
-            const float n = 0.5f * noise(float(x) / 16, float(y) / 16) +
-                            0.3f * noise(float(x) / 5, float(y) / 5) +
-                            0.2f * noise(float(x) / 2, float(y) / 2);
-            const float hue = noise(float(x) / 9 + 20, float(y) / 9 + 7);
-            page[size_t(y * kSide + x)] = glm::clamp(
-                vec3(0.15f + 0.5f * n, 0.12f + 0.45f * n + 0.08f * hue, 0.1f + 0.3f * n), 0.0f, 1.0f);
-        }
-    double error = 0;
-    for (int by = 0; by < kSide; by += 4)
-        for (int bx = 0; bx < kSide; bx += 4) {
-            vec3 texels[16];
-            for (int i = 0; i < 16; ++i) texels[i] = page[size_t((by + i / 4) * kSide + bx + i % 4)];
-            const uvec2 block = bc1_encode(texels, vec3(1));
-            for (int i = 0; i < 16; ++i) {
-                const vec3 d = bc1_decode(block, i) - texels[i];
-                error += glm::dot(d, d);
-            }
-        }
-    const double psnr = -10.0 * std::log10(error / (3.0 * kSide * kSide));
-    RecordProperty("psnr", std::to_string(psnr));
-    std::printf("bc1 ground page: %.2f dB\n", psnr);
-    EXPECT_GT(psnr, 33.5);
 }
 
 TEST(PageEncoding, AFlatNormalIsExactAlsoInSixBits) {
