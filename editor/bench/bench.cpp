@@ -17,7 +17,7 @@ const std::vector<BenchName>& benches() {
          bench_accuracy},
         {"compose", "pages and rectangles composed; the parts of an edit's cost", bench_compose},
         {"crater", "one crater on a 1 km and on a 16 km map: pages, milliseconds, memory", bench_crater},
-        {"edit", "pages and milliseconds of a dab, a footprint and a crater", bench_edit},
+        {"edits", "from a dab's command to the picture, and what that takes, still and in flight", bench_edits},
         {"encoders", "quality of the page encoder beside other block compressors", bench_encoders},
         {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
         {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},
@@ -83,6 +83,23 @@ Spread spread_of(std::vector<double> values) {
     std::sort(values.begin(), values.end());
     return {values[values.size() / 2], values[std::min(values.size() - 1, values.size() * 95 / 100)],
             values.back()};
+}
+
+double percentile(std::vector<double> values, double share) {
+    if (values.empty()) return 0;
+    std::sort(values.begin(), values.end());
+    return values[std::min(values.size() - 1, static_cast<size_t>(static_cast<double>(values.size()) * share))];
+}
+
+FrameSettings moving_frame(float render_scale) {
+    FrameSettings settings;
+    settings.render_scale = render_scale;
+    settings.fine_filter = false;
+    return settings;
+}
+
+FrameSettings still_frame() {
+    return {};
 }
 
 // --- temporary projects ---

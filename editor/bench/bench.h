@@ -38,7 +38,7 @@ struct BenchName {
 Result<BenchReport> bench_accuracy(const BenchRequest& request);
 Result<BenchReport> bench_compose(const BenchRequest& request);
 Result<BenchReport> bench_crater(const BenchRequest& request);
-Result<BenchReport> bench_edit(const BenchRequest& request);
+Result<BenchReport> bench_edits(const BenchRequest& request);
 Result<BenchReport> bench_encoders(const BenchRequest& request);
 Result<BenchReport> bench_frame(const BenchRequest& request);
 Result<BenchReport> bench_ground(const BenchRequest& request);
@@ -55,6 +55,11 @@ struct Spread {
     double median = 0, p95 = 0, max = 0;
 };
 [[nodiscard]] Spread spread_of(std::vector<double> values);
+[[nodiscard]] double percentile(std::vector<double> values, double share);  // 0 of none
+
+// How the window draws while something moves, and at rest (editor/window/window_loop.cpp).
+[[nodiscard]] FrameSettings moving_frame(float render_scale);
+[[nodiscard]] FrameSettings still_frame();
 
 // A project in a temporary folder, removed with the object.
 class TemporaryProject {
@@ -77,7 +82,10 @@ class TemporaryProject {
 // picture.
 Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height,
                           const Command& command);
-// The same for composing every resident page again.
-Result<Json> measure_compose_all(Session& session, const Camera& camera, int width, int height);
+
+// Milliseconds from submit to fence of the newest frame's resolve again, or of its floor; without settings of
+// an empty frame.
+Result<double> resolve_probe_ms(Session& session, const FrameSettings* settings,
+                                Renderer::ResolveProbe probe);
 
 }  // namespace loam::bench

@@ -75,10 +75,7 @@ Result<BenchReport> bench_frame(const BenchRequest& request) {
             if (!dirt) return dirt.error();
             edits.push_back(now_ms() - start_ms);
         }
-        FrameSettings settings;
-        settings.render_scale = kScales[scale];
-        settings.fine_filter = false;
-        LOAM_TRY(s.step(camera, request.width, request.height, settings, 1));
+        LOAM_TRY(s.step(camera, request.width, request.height, moving_frame(kScales[scale]), 1));
         const double ms = now_ms() - start_ms;
         all.push_back(ms);
         recent.push_back(ms);

@@ -37,8 +37,10 @@ Result<Pictures> watch(Session& session, const RenderRequest& request, const Pic
     return seen;
 }
 
-template <typename Change>
-Result<Json> measure(Session& session, const Camera& camera, int width, int height, Change&& change) {
+}  // namespace
+
+Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height,
+                          const Command& command) {
     auto renderer = session.renderer();
     if (!renderer) return renderer.error();
     RenderRequest request{.camera = camera, .width = width, .height = height, .frame = {}};
@@ -46,7 +48,8 @@ Result<Json> measure(Session& session, const Camera& camera, int width, int heig
     if (!before) return before.error();
     const FrameStatistics a = (*renderer)->statistics();
     const double start_ms = now_ms();
-    LOAM_TRY(change());
+    auto dirt = session.apply(command);
+    if (!dirt) return dirt.error();
     const double applied_ms = now_ms() - start_ms;
     auto seen = watch(session, request, *before, start_ms);
     if (!seen) return seen.error();
@@ -68,24 +71,17 @@ Result<Json> measure(Session& session, const Camera& camera, int width, int heig
                 {"texture texels", b.texture.texels_composed - a.texture.texels_composed}};
 }
 
-}  // namespace
-
-Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height,
-                          const Command& command) {
-    return measure(session, camera, width, height, [&]() -> Status {
-        auto dirt = session.apply(command);
-        return dirt ? Status() : Status(dirt.error());
-    });
-}
-
-Result<Json> measure_compose_all(Session& session, const Camera& camera, int width, int height) {
-    return measure(session, camera, width, height, [&]() -> Status {
-        auto renderer = session.renderer();
-        if (!renderer) return renderer.error();
-        const std::vector<WorldRect> everything{session.document().bounds()};
-        (*renderer)->on_dirt({everything, everything, everything});
-        return {};
-    });
+Result<double> resolve_probe_ms(Session& session, const FrameSettings* settings,
+                                Renderer::ResolveProbe probe) {
+    auto renderer = session.renderer();
+    if (!renderer) return renderer.error();
+    gpu::FrameRing& ring = *session.ring();
+    auto frame = ring.begin();
+    if (!frame) return frame.error();
+    if (settings) LOAM_TRY((*renderer)->resolve_again(ring, (*frame)->commands, *settings, probe));
+    const double start_ms = now_ms();
+    LOAM_TRY(ring.finish(**frame));
+    return now_ms() - start_ms;
 }
 
 }  // namespace loam::bench

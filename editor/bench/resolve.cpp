@@ -10,17 +10,6 @@ namespace {
 
 constexpr int kTurns = 60;
 
-Result<double> probe_ms(Session& session, Renderer& renderer, const FrameSettings* settings,
-                        Renderer::ResolveProbe probe) {
-    gpu::FrameRing& ring = *session.ring();
-    auto frame = ring.begin();
-    if (!frame) return frame.error();
-    if (settings) LOAM_TRY(renderer.resolve_again(ring, (*frame)->commands, *settings, probe));
-    const double start_ms = now_ms();
-    LOAM_TRY(ring.finish(**frame));
-    return now_ms() - start_ms;
-}
-
 }  // namespace
 
 Result<BenchReport> bench_resolve(const BenchRequest& request) {
@@ -49,11 +38,11 @@ Result<BenchReport> bench_resolve(const BenchRequest& request) {
         if (!picture) return picture.error();
         std::vector<double> resolve, floor, empty;
         for (int i = -5; i < (request.quick ? 5 : kTurns); ++i) {
-            auto none = probe_ms(s, **renderer, nullptr, Probe::floor);
+            auto none = resolve_probe_ms(s, nullptr, Probe::floor);
             if (!none) return none.error();
-            auto real = probe_ms(s, **renderer, &settings, Probe::resolve);
+            auto real = resolve_probe_ms(s, &settings, Probe::resolve);
             if (!real) return real.error();
-            auto least = probe_ms(s, **renderer, &settings, Probe::floor);
+            auto least = resolve_probe_ms(s, &settings, Probe::floor);
             if (!least) return least.error();
             if (i < 0) continue;  // pipelines compile
             empty.push_back(*none);

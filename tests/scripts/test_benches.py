@@ -1,0 +1,33 @@
+"""Every bench of the virtual texture runs, with the keys that docs/measurements.md quotes; figures are only checked to be possible."""
+import json
+
+import pytest
+from conftest import run_loam
+
+pytestmark = pytest.mark.usefixtures("has_device")
+
+
+def bench(name, project, *options):
+    """Tables of a quick run: (title, rows), all rows of a table with the same keys."""
+    process = run_loam("bench", name, project, "--quick", "--json", *options)
+    assert process.returncode == 0, process.stderr
+    tables = [(table["title"], table["rows"]) for table in json.loads(process.stdout)]
+    for title, rows in tables:
+        assert title and rows
+        assert all(row.keys() == rows[0].keys() for row in rows), title
+    return tables
+
+
+def test_edits(plain):
+    (_, times), (_, work) = bench("edits", plain, "--size", "192x108")
+    assert {row["camera"] for row in times} == {"still", "in flight"}
+    for row, costs in zip(times, work):
+        assert (row["edit"], row["camera"]) == (costs["edit"], costs["camera"])
+        assert row["given up"] == 0 and row["dabs"] > 0
+        assert 0 <= row["apply ms p50"] <= row["apply ms p99"] <= row["shown ms p99"] <= row["finest mip ms p99"]
+        assert 1 <= row["shown in frame p99"] < 10
+        assert costs["steady frame ms"] > 0
+        if "sculpt" in row["edit"]:
+            assert costs["height texels"] > 0 and costs["texture texels"] == 0
+        else:
+            assert costs["texture pages dirtied"] > 0 and costs["texture texels"] > 0
