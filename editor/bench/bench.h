@@ -16,6 +16,7 @@ struct BenchRequest {
     int width = 960, height = 540;
     int frames = 300;              // frame
     double goal_ms = 33;           // frame
+    int dabs = 0;                  // edits: a row; 0: up to 200, as many as some seconds allow
     std::optional<Camera> camera;  // accuracy; none: three views of the map
     std::filesystem::path dem;     // ground
     bool quick = false;            // fewer settings and frames: for tests
@@ -37,9 +38,11 @@ struct BenchName {
 
 Result<BenchReport> bench_accuracy(const BenchRequest& request);
 Result<BenchReport> bench_compose(const BenchRequest& request);
+Result<BenchReport> bench_cost(const BenchRequest& request);
 Result<BenchReport> bench_crater(const BenchRequest& request);
 Result<BenchReport> bench_edits(const BenchRequest& request);
 Result<BenchReport> bench_encoders(const BenchRequest& request);
+Result<BenchReport> bench_flat(const BenchRequest& request);
 Result<BenchReport> bench_frame(const BenchRequest& request);
 Result<BenchReport> bench_ground(const BenchRequest& request);
 Result<BenchReport> bench_resolve(const BenchRequest& request);
@@ -61,12 +64,21 @@ struct Spread {
 [[nodiscard]] FrameSettings moving_frame(float render_scale);
 [[nodiscard]] FrameSettings still_frame();
 
+struct MapPart {
+    std::filesystem::path of;
+    double part_m = 1024;  // side of the square copied from the middle; its spacings should divide 64 m
+    double side_m = 1024;  // of the new map: the square is its south-west corner, the rest flat
+    int layers = 0;        // > 0: a mosaic of so many, which repeat the files of the source's
+    double mosaic_m = 4;   // a piece of it
+};
+
 // A project in a temporary folder, removed with the object.
 class TemporaryProject {
   public:
     // A flat map of `side_m` with the layers of `like`, heights every metre; nothing is written, so every
     // page is all default.
     static Result<TemporaryProject> create_flat(const std::filesystem::path& like, double side_m);
+    static Result<TemporaryProject> create_part(const MapPart& request);  // without operators
     static Result<TemporaryProject> create_copy(const std::filesystem::path& of);
     TemporaryProject(TemporaryProject&& other) noexcept;
     ~TemporaryProject();

@@ -13,9 +13,10 @@ namespace loam::bench {
 namespace {
 
 constexpr int kDabs = 200, kQuickDabs = 4;
-constexpr double kMostPerRow_ms = 12'000;  // of dabs and the steady frames between them; at least kQuickDabs
-constexpr int kSteadyFrames = 3;           // between two dabs
-constexpr int kMaxFrames = 240;            // of one dab; then it is given up
+constexpr double kMostPerRow_ms =
+    5'000;                        // of dabs and the steady frames between them, unless --dabs says how many
+constexpr int kSteadyFrames = 3;  // between two dabs
+constexpr int kMaxFrames = 240;   // of one dab; then it is given up
 constexpr uint64_t kHeightPageTexels = uint64_t(kHeightTexels) * kHeightTexels;
 
 enum class Tool { footprint, paint, sculpt, crater };
@@ -206,10 +207,10 @@ Status measure_brush(Session& session, const BenchRequest& request, const Brush&
     DabFigures figures;
     DabFigures warm;
     LOAM_TRY(one_dab(rig, 1001, warm));  // pipelines compile
-    const int wanted = request.quick ? kQuickDabs : kDabs;
+    const int wanted = request.dabs > 0 ? request.dabs : request.quick ? kQuickDabs : kDabs;
     const double start_ms = now_ms();
     int dabs = 0;
-    while (dabs < wanted && (dabs < kQuickDabs || now_ms() - start_ms < kMostPerRow_ms))
+    while (dabs < wanted && (request.dabs > 0 || dabs < kQuickDabs || now_ms() - start_ms < kMostPerRow_ms))
         LOAM_TRY(one_dab(rig, dabs++, figures));
 
     const auto at = [](const std::vector<double>& values, double share, int decimals = 1) {

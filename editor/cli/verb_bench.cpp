@@ -28,6 +28,7 @@ Status run(const Args& args) {
     request.height = size.height;
     request.frames = args.integer("--frames", 300);
     request.goal_ms = args.number("--goal", 33);
+    request.dabs = args.integer("--dabs", 0);
     request.dem = args.text("--dem");
     request.quick = args.has("--quick");
     if (args.has("--camera")) request.camera = parse_camera(args.text("--camera")).value();
@@ -55,6 +56,7 @@ Verb bench_verb() {
              {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]", "accuracy: this view only"},
              {"--frames", ValueKind::integer, "N", "frame: how many; default 300"},
              {"--goal", ValueKind::number, "MS", "frame: milliseconds a frame; default 33"},
+             {"--dabs", ValueKind::integer, "N", "edits: a row; default up to 200 within 5 s"},
              {"--dem", ValueKind::text, "DIR", "ground: folder of real elevation data"},
              {"--quick", ValueKind::none, "", "fewer views and repeats"},
              {"--json", ValueKind::none, "", "print as JSON"}}),

@@ -31,3 +31,19 @@ def test_edits(plain):
             assert costs["height texels"] > 0 and costs["texture texels"] == 0
         else:
             assert costs["texture pages dirtied"] > 0 and costs["texture texels"] > 0
+
+
+def test_cost(plain):
+    ((_, rows),) = bench("cost", plain, "--size", "192x108")
+    assert [(row["layers"], row["decals"]) for row in rows] == [(4, 0), (4, 200)]
+    for row in rows:
+        assert all(row[key] > 0 for key in row if "ms" in key), row
+        assert row["direct / virtual"] == pytest.approx(row["direct ms"] / row["virtual ms"], rel=0.05)
+
+
+def test_flat(plain):
+    ((_, rows),) = bench("flat", plain, "--size", "192x108")
+    assert [row["map"] for row in rows] == ["1024 m", "4096 m", "16384 m"]
+    for row in rows:
+        assert 0 < row["median ms"] <= row["p95 ms"]
+        assert row["patches in view"] == rows[0]["patches in view"]  # the same picture
