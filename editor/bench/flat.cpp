@@ -1,5 +1,6 @@
 // A steady flight costs the same on maps of 1, 4 and 16 km: the same square kilometre on each, seen from the
 // same places, the maps taking turns frame by frame so that drift of the machine hits all alike.
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -12,15 +13,16 @@ namespace {
 constexpr double kSides_m[] = {1024, 4096, 16384};
 constexpr int kFrames = 300, kQuickFrames = 12;
 constexpr int kWarmFrames = 60;  // pipelines, first pages
-constexpr double kSpeed_m_s = 20, kFrame_s = 1.0 / 30, kRadius_m = 180;
+constexpr double kSpeed_m_s = 20, kFrame_s = 1.0 / 30;
 constexpr double kAbove_m = 25, kAhead_m = 25;  // 45 degrees down: nothing beyond the square is in view
 
-Result<Camera> camera_at(Session& session, double along_m) {
-    const double angle = along_m / kRadius_m;
+Result<Camera> camera_at(Session& session, double part_m, double along_m) {
+    const double middle_m = 0.5 * part_m, radius_m = 0.17 * part_m;
+    const double angle = along_m / radius_m;
     const auto at = [&](double a) {
-        return glm::dvec2(512 + kRadius_m * std::sin(a), 512 - kRadius_m * std::cos(a));
+        return glm::dvec2(middle_m + radius_m * std::sin(a), middle_m - radius_m * std::cos(a));
     };
-    const glm::dvec2 here = at(angle), there = at(angle + kAhead_m / kRadius_m);
+    const glm::dvec2 here = at(angle), there = at(angle + kAhead_m / radius_m);
     auto low = session.height_m(here.x, here.y);
     if (!low) return low.error();
     auto ahead = session.height_m(there.x, there.y);
@@ -31,10 +33,15 @@ Result<Camera> camera_at(Session& session, double along_m) {
 }  // namespace
 
 Result<BenchReport> bench_flat(const BenchRequest& request) {
+    auto settings = load_project(request.project);
+    if (!settings) return settings.error();
+    const WorldRect whole = settings->bounds();
+    const double part_m = std::min({kSides_m[0], whole.width(), whole.height()});
     std::vector<TemporaryProject> projects;
     std::vector<std::unique_ptr<Session>> sessions;
     for (const double side_m : kSides_m) {
-        auto project = TemporaryProject::create_part({.of = request.project, .side_m = side_m});
+        auto project =
+            TemporaryProject::create_part({.of = request.project, .part_m = part_m, .side_m = side_m});
         if (!project) return project.error();
         projects.push_back(std::move(*project));
         auto session = Session::open(projects.back().path(), request.session);
@@ -45,7 +52,7 @@ Result<BenchReport> bench_flat(const BenchRequest& request) {
     std::vector<double> times[kMaps];
     const int warm = request.quick ? 6 : kWarmFrames, frames = request.quick ? kQuickFrames : kFrames;
     for (int i = -warm; i < frames; ++i) {
-        auto camera = camera_at(*sessions[0], i * kSpeed_m_s * kFrame_s);
+        auto camera = camera_at(*sessions[0], part_m, i * kSpeed_m_s * kFrame_s);
         if (!camera) return camera.error();
         for (size_t turn = 0; turn < kMaps; ++turn) {
             const size_t map = (turn + static_cast<size_t>(i + warm)) % kMaps;
