@@ -30,7 +30,7 @@ double layers_met(const IndexTexel* texels) {
 }
 
 Status bench_pages(Stage& stage, PageFormat format, BenchTable& table) {
-    const TextureLayout layout = texture_layout(stage.document.bounds(), 6);
+    const TextureLayout layout = texture_layout(stage.document.bounds());
     auto atlas = make_page_atlas(stage.device, format, 2, 2);
     if (!atlas) return atlas.error();
     auto composer =

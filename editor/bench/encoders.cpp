@@ -167,7 +167,7 @@ Result<BenchReport> bench_encoders(const BenchRequest& request) {
     if (!(*device)->caps().bc) return error("the device {} has no block compression", (*device)->caps().name);
     auto stage = Stage::create(**device, **document);
     if (!stage) return stage.error();
-    const TextureLayout layout = texture_layout((*document)->bounds(), 6);
+    const TextureLayout layout = texture_layout((*document)->bounds());
     auto jobs = pages_of(*stage, layout);
     if (!jobs) return jobs.error();
     auto plain = composed(*stage, layout, PageFormat::rgba8, *jobs);

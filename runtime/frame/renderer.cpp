@@ -5,7 +5,9 @@
 #include <cmath>
 
 #include "runtime/base/check.h"
+#include "runtime/frame/announced_view.h"
 #include "runtime/frame/resolve_pass.h"
+#include "runtime/frame/sector_distances.h"
 #include "runtime/frame/targets.h"
 #include "runtime/geometry/patch_tree.h"
 #include "runtime/geometry/terrain_pass.h"
@@ -93,7 +95,9 @@ struct Renderer::Impl {
     bool changed = true;      // something changed since the last frame
     uint64_t view_frame = 0;  // the first frame of the present view
     PatchSet patches;
+    std::optional<AnnouncedView> announced;
     Camera last_camera;
+    double camera_speed_m_s = 0;
     std::vector<gpu::PassTime> pass_times;  // of the newest finished frame
     gpu::UploadSlice decals;                // of direct shading, this frame's
     bool has_decals = false;
@@ -104,7 +108,8 @@ struct Renderer::Impl {
                                                  const FrameSettings& settings) const;
     void request_direct_pages(double pixels_per_radian, double footprint_bias);
     void upload_direct_decals(gpu::FrameRing& ring, double pixels_per_radian, double footprint_bias);
-    void prepass(gpu::Commands& commands, glm::uvec2 size, const shared::FrameUniforms& u);
+    Status announced_feedback(gpu::FrameRing& ring, gpu::Commands& commands, const FrameSettings& settings);
+    [[nodiscard]] double speed_m_s(const Camera& camera, double seconds);
     [[nodiscard]] ResolveInputs resolve_inputs(const gpu::UploadSlice& uniform_slice);
 };
 
@@ -148,8 +153,6 @@ Status Renderer::Impl::create_texture(gpu::FrameRing& ring) {
                               .indirection_size = desc.quality >= Quality::high ? 1024 : 512,
                               .format = format,
                               .budget_pages = desc.page_budget > 0 ? desc.page_budget : defaults.page_budget};
-    // Live sectors are 64x64 texels of the indirection each: 512 holds 48 beside a default sector of 128x128.
-    wanted.max_live_sectors = wanted.indirection_size == 512 ? 40 : 200;
     auto made = VirtualTexture::create(device, document, *indices, *layers, wanted);
     if (!made) return made.error();
     texture = std::move(*made);
@@ -175,22 +178,6 @@ shared::FrameUniforms Renderer::Impl::uniforms(const Camera& camera, glm::uvec2 
     u.inv_picture_px = 1.0f / glm::vec2(size);
     u.frame = uint32_t(frame);
     return u;
-}
-
-void Renderer::Impl::prepass(gpu::Commands& commands, glm::uvec2 size, const shared::FrameUniforms& u) {
-    const auto pass = commands.pass("prepass", {{targets.depth, Access::depth_target},
-                                                {targets.gbuffer, Access::color_target},
-                                                {targets.occlusion, Access::color_target},
-                                                {heights->heights(), Access::vertex_read},
-                                                {heights->normals(), Access::fragment_sampled}});
-    const gpu::ColorTarget colors[] = {{targets.gbuffer.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}},
-                                       {targets.occlusion.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}}};
-    commands.begin_rendering(
-        {size.x, size.y}, colors,
-        {.view = targets.depth.view(), .load = VK_ATTACHMENT_LOAD_OP_CLEAR, .has_stencil = true});
-    commands.set_viewport(0, 0, float(size.x), float(size.y));
-    terrain->cmd_draw_prepass(commands, patches, *heights, u.clip_from_rel, last_camera.position_m);
-    commands.end_rendering();
 }
 
 // Direct shading looks up any place of the index map: every page under the visible patches, at the level that
@@ -257,6 +244,46 @@ void Renderer::on_dirt(const Dirt& dirt) {
     r.texture->on_dirt(dirt.texture);
 }
 
+void Renderer::announce(const std::optional<Camera>& camera) {
+    Impl& r = *impl_;
+    if (!camera) {
+        r.announced.reset();
+        return;
+    }
+    if (!r.announced) r.announced.emplace();
+    r.announced->camera = *camera;
+    r.changed = true;
+}
+
+// What the announced place's picture will want.
+Status Renderer::Impl::announced_feedback(gpu::FrameRing& ring, gpu::Commands& commands,
+                                          const FrameSettings& settings) {
+    AnnouncedView& a = *announced;
+    LOAM_TRY(a.targets.ensure(device, a.size));
+    LOAM_TRY(terrain->upload(ring, commands, a.patches));
+    const shared::FrameUniforms u = uniforms(a.camera, a.size, settings);
+    const gpu::UploadSlice slice = ring.upload(sizeof(u));
+    *slice.as<shared::FrameUniforms>() = u;
+    cmd_prepass(commands, *terrain, a.targets, *heights, a.patches, a.size, u.clip_from_rel);
+    return texture->record_feedback(ring, commands,
+                                    {.depth = a.targets.depth,
+                                     .gbuffer = a.targets.gbuffer,
+                                     .uniforms = *slice.buffer,
+                                     .uniforms_offset = slice.offset,
+                                     .picture_px = a.size,
+                                     .eye = Eye::announced,
+                                     .footprint_log2 = a.footprint_log2});
+}
+
+// Smoothed over a few frames; a jump is no speed.
+double Renderer::Impl::speed_m_s(const Camera& camera, double seconds) {
+    constexpr double kJump_m = 64;
+    const double moved_m = glm::length(camera.position_m - last_camera.position_m);
+    const double now = moved_m < kJump_m && seconds > 0 ? moved_m / seconds : 0.0;
+    camera_speed_m_s = moved_m < kJump_m ? 0.7 * camera_speed_m_s + 0.3 * now : 0.0;
+    return camera_speed_m_s;
+}
+
 // The frame, top to bottom.
 Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Camera& camera,
                         glm::uvec2 extent, const FrameSettings& settings) {
@@ -271,6 +298,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     LOAM_TRY(r.targets.ensure(r.device, glm::max(extent, size)));
     if (!same_view(camera, r.last_camera) || size != r.picture_size) r.view_frame = r.frame;
     r.picture_size = size;
+    const double speed_m_s = r.speed_m_s(camera, last_frame_ms / 1000);
     r.last_camera = camera;
 
     shared::FrameUniforms u = r.uniforms(camera, size, settings);
@@ -283,13 +311,30 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
                                     .clip_from_rel = camera.clip_from_rel(size.x, size.y, settings.jitter_px),
                                     .split_distance = split,
                                     .hidden_share = kHiddenShare});
-    const TextureView view{.camera_m = camera.position_m,
-                           .pixels_per_radian = size.y * 0.5 / std::tan(camera.fov_y_rad * 0.5),
-                           .frame = r.frame,
-                           .budget_pages = settings.page_budget,
-                           // The coarse filter is for motion and work: then frames are waited for.
-                           .goal_ms = settings.fine_filter ? 0.0 : kFrameGoal_ms,
-                           .last_frame_ms = last_frame_ms};
+    const double pixels_per_radian = size.y * 0.5 / std::tan(camera.fov_y_rad * 0.5);
+    std::vector<SectorDistance> near =
+        sector_distances(r.patches, *r.heights, r.texture->live_radius_m(pixels_per_radian, 0));
+    if (r.announced) {
+        r.announced->prepare(*r.heights, extent, split);
+        const double there = extent.y * 0.5 / std::tan(r.announced->camera.fov_y_rad * 0.5);
+        std::vector<SectorDistance> far =
+            sector_distances(r.announced->patches, *r.heights, r.texture->live_radius_m(there, 0));
+        for (SectorDistance& s : far) s.distance_m *= pixels_per_radian / there;
+        merge_nearer(near, far);
+    }
+    const TextureView view{
+        .camera_m = camera.position_m,
+        .pixels_per_radian = pixels_per_radian,
+        .near = near,
+        .speed_m_s = speed_m_s,
+        .announced_m = r.announced ? std::optional(r.announced->camera.position_m) : std::nullopt,
+        .frame = r.frame,
+        .same_since = r.view_frame,
+        .still = settings.fine_filter,
+        .budget_pages = settings.page_budget,
+        // The coarse filter is for motion and work: then frames are waited for.
+        .goal_ms = settings.fine_filter ? 0.0 : kFrameGoal_ms,
+        .last_frame_ms = last_frame_ms};
     r.texture->request_inputs(view);
     if (settings.shading == Shading::direct) {
         r.request_direct_pages(view.pixels_per_radian, settings.footprint_bias);
@@ -298,6 +343,8 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     LOAM_TRY(r.heights->update(ring, commands, r.frame, r.defaults.height_pages));
     LOAM_TRY(r.indices->update(ring, commands, r.frame, r.defaults.index_pages));
     LOAM_TRY(r.texture->update(ring, commands, view));
+    if (r.announced && settings.shading == Shading::virtual_texture)
+        LOAM_TRY(r.announced_feedback(ring, commands, settings));
     LOAM_TRY(r.terrain->upload(ring, commands, r.patches));
 
     // Shadows: only the cascades that something has changed in.
@@ -311,11 +358,15 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     *slice.as<shared::FrameUniforms>() = u;
 
     // Depth, stencil, geometric normal, footprint.
-    r.prepass(commands, size, u);
+    cmd_prepass(commands, *r.terrain, r.targets, *r.heights, r.patches, size, u.clip_from_rel);
     // Which pages the picture would like to have.
     if (settings.shading == Shading::virtual_texture)
-        LOAM_TRY(r.texture->record_feedback(ring, commands, r.targets.depth, r.targets.gbuffer, *slice.buffer,
-                                            slice.offset));
+        LOAM_TRY(r.texture->record_feedback(ring, commands,
+                                            {.depth = r.targets.depth,
+                                             .gbuffer = r.targets.gbuffer,
+                                             .uniforms = *slice.buffer,
+                                             .uniforms_offset = slice.offset,
+                                             .picture_px = size}));
     // Sky, then the terrain's pixels from the virtual texture.
     LOAM_TRY(r.resolve->cmd_record(commands, r.resolve_inputs(slice), settings, ResolvePart::all));
     r.last_uniforms = u;

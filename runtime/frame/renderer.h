@@ -36,7 +36,8 @@ enum class Quality {
 struct RendererDesc {
     Quality quality = Quality::low;
     std::optional<PageFormat> page_format;  // default by device profile
-    // The talk's 144 height pages serve its patches; here a page's normals are seen pixel by pixel, which wants smaller pages.
+    // The talk's 144 height pages serve its patches; here a page's normals are seen pixel by pixel, which
+    // wants smaller pages.
     int height_slots = 320, index_slots = 144;
     int page_budget = 0;  // whole texture pages a frame; 0: by profile
     bool shadows = true;
@@ -71,6 +72,9 @@ class Renderer {
     // Records one frame. The picture is `extent` · render_scale pixels in the upper left of picture().
     Status render(gpu::FrameRing& ring, gpu::Commands& commands, const Camera& camera, glm::uvec2 extent,
                   const FrameSettings& settings);
+    // The camera will soon be there: its pages are made beside the picture's, until another place or none is
+    // announced.
+    void announce(const std::optional<Camera>& camera);
     [[nodiscard]] gpu::Image& picture();            // RGBA8_UNORM, sRGB-encoded, last access fragment_sampled
     [[nodiscard]] glm::uvec2 picture_size() const;  // pixels of it that the last frame filled
     [[nodiscard]] gpu::Image& gbuffer();            // tests: RGBA16F
@@ -91,8 +95,8 @@ class Renderer {
 
     [[nodiscard]] FrameStatistics statistics() const;
     [[nodiscard]] const LayerSet& layers() const;
-    // Benches: the newest frame's resolve again, over its depth and g-buffer, without sky; or the floor that it is
-    // measured against (shaders/frame/resolve_floor.frag).
+    // Benches: the newest frame's resolve again, over its depth and g-buffer, without sky; or the floor that
+    // it is measured against (shaders/frame/resolve_floor.frag).
     enum class ResolveProbe { resolve, floor };
     Status resolve_again(gpu::FrameRing& ring, gpu::Commands& commands, const FrameSettings& settings,
                          ResolveProbe probe);

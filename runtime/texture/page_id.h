@@ -35,15 +35,12 @@ struct PageIdHash {
     }
 };
 
-// The sizes of the images.
+// The images' squares of the world. How many pages wide a live image is changes while it lives
+// (sector_set.h); its pages keep their identity.
 struct TextureLayout {
     int default_log2_width = 0;  // pages
     int default_log2_page = 0;  // log2 of (side of the finest default page / 64 m): 1 for maps above 16,384 m
-    int sector_log2_width = 6;
 
-    [[nodiscard]] int log2_width(const ImageId& image) const {
-        return image.live ? sector_log2_width : default_log2_width;
-    }
     [[nodiscard]] double image_side_m(const ImageId& image) const {
         return image.live ? kSectorSize_m : std::ldexp(kSectorSize_m, default_log2_width + default_log2_page);
     }
@@ -51,7 +48,6 @@ struct TextureLayout {
         return std::ldexp(image_side_m(page.image), -page.depth);
     }
     [[nodiscard]] double texel_m(const PageId& page) const { return page_side_m(page) / kPagePayload; }
-    [[nodiscard]] int mip(const PageId& page) const { return log2_width(page.image) - page.depth; }
     // The payload's square.
     [[nodiscard]] WorldRect square(const PageId& page) const {
         const double side = page_side_m(page);
@@ -63,9 +59,8 @@ struct TextureLayout {
 
 // The smallest default image that covers the map: at most 256 pages wide, as a page coordinate has eight
 // bits.
-[[nodiscard]] inline TextureLayout texture_layout(const WorldRect& bounds, int sector_log2_width) {
+[[nodiscard]] inline TextureLayout texture_layout(const WorldRect& bounds) {
     TextureLayout layout;
-    layout.sector_log2_width = sector_log2_width;
     const double side = std::max(bounds.max_x, bounds.max_y);
     int log2_sectors = 0;
     while (std::ldexp(kSectorSize_m, log2_sectors) < side) ++log2_sectors;

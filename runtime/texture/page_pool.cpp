@@ -46,7 +46,8 @@ int PagePool::take(const PageId& page, uint64_t frame) {
     if (best < 0) return -1;
     Place& place = places_[size_t(best)];
     if (place.state != State::free) by_page_.erase(place.page);
-    place = {page, State::composed, is_default_root(page), frame, frame, {}};
+    const uint32_t generation = place.generation + 1;
+    place = {page, State::composed, is_default_root(page), frame, frame, {}, generation};
     by_page_.emplace(page, best);
     return best;
 }
@@ -94,6 +95,14 @@ std::vector<int> PagePool::retirable(uint64_t frame) const {
         return age_a != age_b ? age_a < age_b : a < b;
     });
     return found;
+}
+
+void PagePool::mark_low_res(int index, int input_level, uint64_t frame) {
+    Place& p = places_[size_t(index)];
+    p.retry_wait = p.low_res ? std::min(p.retry_wait * 2, kLastRetry) : kFirstRetry;
+    p.retry_frame = frame + uint64_t(p.retry_wait);
+    p.low_res = true;
+    p.input_level = input_level;
 }
 
 void PagePool::mark_dirty(int index, const TexelRect& rect) {

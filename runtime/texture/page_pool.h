@@ -15,6 +15,8 @@
 //  4. Of the places that may be taken, the one whose page was requested longest ago is taken first.
 //  5. Pinned places (the default root, roots of live sectors) are never retired.
 //  6. Dirt reaches a page in every state but free, so a resting page that is revived has missed no edit.
+//  7. A place's generation is the number of pages it has held: who remembers a place by its generation sees
+//  that it has been recycled.
 // Source: Call of Duty talk, "Virtual Image Quad Tree", "Composition Manager".
 #pragma once
 
@@ -41,6 +43,13 @@ class PagePool {
         uint64_t last_requested = 0;
         uint64_t changed = 0;  // frame of the last change of state
         TexelRect dirty;       // of the page with border
+        uint32_t generation = 0;
+        // Composed from coarser inputs than it should be: again at `retry_frame`, and so on at growing
+        // intervals.
+        bool low_res = false;
+        int input_level = 0;  // of the index page it was composed from
+        int retry_wait = 0;   // frames
+        uint64_t retry_frame = 0;
     };
 
     // Place 0 is kept for the default root.
@@ -50,6 +59,7 @@ class PagePool {
     [[nodiscard]] int used_count() const { return int(by_page_.size()); }
     [[nodiscard]] int pages_per_side() const { return pages_per_side_; }
     [[nodiscard]] const Place& place(int index) const { return places_[size_t(index)]; }
+    [[nodiscard]] const std::vector<Place>& places() const { return places_; }
     [[nodiscard]] int find(const PageId& page) const;  // -1: absent
 
     void touch(int index, uint64_t frame);  // requested in this frame
@@ -68,6 +78,11 @@ class PagePool {
 
     void mark_dirty(int index, const TexelRect& rect);
     void clear_dirty(int index) { places_[size_t(index)].dirty = {}; }
+
+    // Frames between compositions of a page that lacks inputs: 15, 30, 60, and 60 again.
+    static constexpr int kFirstRetry = 15, kLastRetry = 60;
+    void mark_low_res(int index, int input_level, uint64_t frame);
+    void clear_low_res(int index) { places_[size_t(index)].low_res = false; }
 
   private:
     int pages_per_side_;

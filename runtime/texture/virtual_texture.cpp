@@ -14,9 +14,9 @@ namespace loam {
 namespace {
 
 using gpu::Access;
+constexpr int kRootDivisor = 4;  // at most this part of the physical texture holds roots of live sectors
 constexpr float kAnisotropy =
     0.5f;  // between the long axis (0: blurry) and the short one (1: aliased), as the talk's mipBias
-constexpr uint32_t kFeedbackValues = kFeedbackWidth * kFeedbackHeight;
 
 template <typename T>
 Status assign(T& target, Result<T> made) {
@@ -46,14 +46,15 @@ Status VirtualTexture::Impl::make_resources() {
                                                                  .usage = VK_IMAGE_USAGE_STORAGE_BIT |
                                                                           VK_IMAGE_USAGE_SAMPLED_BIT |
                                                                           VK_IMAGE_USAGE_TRANSFER_SRC_BIT})));
-    LOAM_TRY(assign(t.sector_table,
-                    storage_buffer(t.device, "sector table", kSectorTableSide * kSectorTableSide * 4)));
-    LOAM_TRY(assign(t.params, storage_buffer(t.device, "texture params", sizeof(shared::VtParams))));
+    for (EyeState& eye : t.eyes) {
+        LOAM_TRY(assign(eye.sector_table,
+                        storage_buffer(t.device, "sector table", kSectorTableSide * kSectorTableSide * 4)));
+        LOAM_TRY(assign(eye.params, storage_buffer(t.device, "texture params", sizeof(shared::VtParams))));
+    }
     LOAM_TRY(
         assign(t.direct_params, storage_buffer(t.device, "direct params", sizeof(shared::DirectParams))));
     LOAM_TRY(assign(t.direct_places, storage_buffer(t.device, "direct places",
                                                     size_t(t.layers.count) * sizeof(shared::LayerPlace))));
-    LOAM_TRY(assign(t.feedback, storage_buffer(t.device, "feedback", kFeedbackValues * 4)));
     LOAM_TRY(assign(t.linear, gpu::Sampler::create(t.device, {})));
     LOAM_TRY(assign(t.nearest, gpu::Sampler::create(t.device, {.filter = VK_FILTER_NEAREST})));
     LOAM_TRY(assign(t.fill_pipeline,
@@ -68,7 +69,9 @@ Status VirtualTexture::Impl::make_resources() {
                                                  .shader = "texture/feedback.comp",
                                                  .bindings = {gpu::storage_buffer(0), gpu::storage_buffer(1),
                                                               gpu::sampled_image(2), gpu::sampled_image(3),
-                                                              gpu::storage_buffer(4), gpu::storage_buffer(5)},
+                                                              gpu::storage_buffer(4), gpu::storage_buffer(5),
+                                                              gpu::sampled_image(6)},
+                                                 .push_bytes = sizeof(shared::FeedbackPush),
                                                  .constants = {}}));
 }
 
@@ -78,21 +81,23 @@ Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& devi
     VirtualTextureDesc desc = asked;
     if (desc.pages_per_side < 2 || desc.pages_per_side > 64)
         return error("the physical texture is 2 to 64 pages wide, not {}", desc.pages_per_side);
-    if (!std::has_single_bit(uint32_t(desc.indirection_size)) || desc.indirection_size > 4096)
-        return error("the indirection texture's side is a power of two up to 4096, not {}",
+    if (!std::has_single_bit(uint32_t(desc.indirection_size)) || desc.indirection_size > kMaxIndirectionSize)
+        return error("the indirection texture's side is a power of two up to {}, not {}", kMaxIndirectionSize,
                      desc.indirection_size);
     if (desc.format == PageFormat::bc1x3 && !device.caps().bc) desc.format = PageFormat::rgba8;
-    const TextureLayout layout = texture_layout(document.bounds(), desc.sector_log2_width);
+    const TextureLayout layout = texture_layout(document.bounds());
     const int log2_size = std::countr_zero(uint32_t(desc.indirection_size));
-    if (log2_size < layout.default_log2_width || log2_size < desc.sector_log2_width)
-        return error("an indirection texture of {} texels cannot hold images of {} and {} pages",
-                     desc.indirection_size, 1 << layout.default_log2_width, 1 << desc.sector_log2_width);
+    if (log2_size < layout.default_log2_width)
+        return error("an indirection texture of {} texels cannot hold the map's image of {} pages",
+                     desc.indirection_size, 1 << layout.default_log2_width);
+    // Their roots stay resident.
+    desc.max_live_sectors =
+        std::min({desc.max_live_sectors, 255, desc.pages_per_side * desc.pages_per_side / kRootDivisor});
     std::unique_ptr<VirtualTexture> texture(new VirtualTexture);
-    texture->impl_ = std::make_unique<Impl>(device, document, index, layers, desc, layout,
-                                            SectorSetDesc{.layout = layout,
-                                                          .indirection_log2_size = log2_size,
-                                                          .max_live = desc.max_live_sectors,
-                                                          .bounds = document.bounds()});
+    texture->impl_ = std::make_unique<Impl>(
+        device, document, index, layers, desc, layout,
+        SectorSetDesc{
+            .layout = layout, .indirection_log2_size = log2_size, .max_live = desc.max_live_sectors});
     LOAM_TRY(texture->impl_->make_resources());
     auto composer = Composer::create(device, document, index, layers, layout, desc.format, desc.decals);
     if (!composer.ok()) return composer.error();
@@ -123,24 +128,39 @@ void VirtualTexture::Impl::cmd_indirection(gpu::FrameRing& ring, gpu::Commands& 
     commands.dispatch(uint32_t(cut.size()));
 }
 
-void VirtualTexture::Impl::cmd_parameters(gpu::Commands& commands, const TextureView& view) {
-    const SectorPosition camera = sector_position({view.camera_m.x, view.camera_m.y});
+void VirtualTexture::Impl::cmd_eye(gpu::Commands& commands, const TextureView& view, EyeState& eye,
+                                   const glm::dvec3& at_m) {
+    const SectorPosition at = sector_position({at_m.x, at_m.y});
     const auto log2_texel = [&](const PageId& page) { return float(std::log2(layout.texel_m(page))); };
     shared::VtParams p{};
-    p.camera_sector = camera.sector;
-    p.camera_offset_m = camera.offset_m;
-    p.table_origin = camera.sector - kSectorTableSide / 2;
+    p.camera_sector = at.sector;
+    p.camera_offset_m = at.offset_m;
+    p.table_origin = at.sector - kSectorTableSide / 2;
     p.default_log2_width = layout.default_log2_width;
-    p.sector_log2_width = layout.sector_log2_width;
     p.inv_atlas_pages = 1.0f / float(desc.pages_per_side);
     p.mip_bias = view.mip_bias;
     p.frame = uint32_t(frame);
     p.default_pages_per_sector = std::ldexp(1.0f, -layout.default_log2_page);
-    p.sector_pages = std::ldexp(1.0f, layout.sector_log2_width);
     p.default_log2_texel = log2_texel({{}, layout.default_log2_width, 0, 0});
-    p.sector_log2_texel = log2_texel({{true, 0, 0}, layout.sector_log2_width, 0, 0});
+    p.sector_log2_root = log2_texel({{true, 0, 0}, 0, 0, 0});
     p.anisotropy = kAnisotropy;
+    commands.use({{eye.params, Access::copy_target}});
+    vkCmdUpdateBuffer(commands.handle(), eye.params.handle(), 0, sizeof p, &p);
 
+    if (!eye.table_changed && at.sector == eye.table_sector) return;
+    if (eye.table_changed && &eye == &eyes[0]) changed_frame = frame;
+    eye.table_changed = false;
+    eye.table_sector = at.sector;
+    std::vector<uint32_t> table(size_t(kSectorTableSide) * kSectorTableSide);
+    sectors.write_table(at.sector, table);
+    commands.use({{eye.sector_table, Access::copy_target}});
+    vkCmdUpdateBuffer(commands.handle(), eye.sector_table.handle(), 0, table.size() * sizeof table[0],
+                      table.data());
+}
+
+// What shading without the cache reads.
+void VirtualTexture::Impl::cmd_direct(gpu::Commands& commands, const TextureView& view) {
+    const SectorPosition camera = sector_position({view.camera_m.x, view.camera_m.y});
     const VirtualMap& map = index.map();
     shared::DirectParams d{};
     d.camera_sector = camera.sector;
@@ -156,23 +176,10 @@ void VirtualTexture::Impl::cmd_parameters(gpu::Commands& commands, const Texture
         places.push_back(Composer::layer_place(camera.sector.x * kSectorSize_m,
                                                camera.sector.y * kSectorSize_m, 1.0, 1.0, tile_m,
                                                layers.size_texels));
-
-    commands.use({{params, Access::copy_target},
-                  {direct_params, Access::copy_target},
-                  {direct_places, Access::copy_target}});
-    vkCmdUpdateBuffer(commands.handle(), params.handle(), 0, sizeof p, &p);
+    commands.use({{direct_params, Access::copy_target}, {direct_places, Access::copy_target}});
     vkCmdUpdateBuffer(commands.handle(), direct_params.handle(), 0, sizeof d, &d);
     vkCmdUpdateBuffer(commands.handle(), direct_places.handle(), 0, places.size() * sizeof places[0],
                       places.data());
-    if (!table_changed && camera.sector == table_sector) return;
-    if (table_changed) changed_frame = frame;
-    table_changed = false;
-    table_sector = camera.sector;
-    std::vector<uint32_t> table(size_t(kSectorTableSide) * kSectorTableSide);
-    sectors.write_table(camera.sector, table);
-    commands.use({{sector_table, Access::copy_target}});
-    vkCmdUpdateBuffer(commands.handle(), sector_table.handle(), 0, table.size() * sizeof table[0],
-                      table.data());
 }
 
 Status VirtualTexture::update(gpu::FrameRing& ring, gpu::Commands& commands, const TextureView& view) {
@@ -183,43 +190,62 @@ Status VirtualTexture::update(gpu::FrameRing& ring, gpu::Commands& commands, con
     if (!jobs.empty()) t.changed_frame = t.frame;
     LOAM_TRY(t.composer->cmd_compose(ring, commands, jobs, t.atlas));
     t.cmd_indirection(ring, commands);
-    t.cmd_parameters(commands, view);
+    t.cmd_eye(commands, view, t.eye_state(Eye::camera), view.camera_m);
+    if (view.announced_m) t.cmd_eye(commands, view, t.eye_state(Eye::announced), *view.announced_m);
+    t.cmd_direct(commands, view);
     // From the first frame on everything can be sampled, also before anything was written.
     commands.use({{t.atlas[0], Access::fragment_sampled},
                   {t.atlas[1], Access::fragment_sampled},
                   {t.atlas[2], Access::fragment_sampled},
                   {t.indirection, Access::fragment_sampled}});
+#ifndef NDEBUG
+    const std::string fault = tree_fault();
+    LOAM_CHECK(fault.empty(), fault);
+#endif
     return {};
 }
 
-Status VirtualTexture::record_feedback(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& depth,
-                                       gpu::Image& gbuffer, const gpu::Buffer& frame_uniforms,
-                                       uint64_t uniforms_offset) {
+Status VirtualTexture::record_feedback(gpu::FrameRing& ring, gpu::Commands& commands,
+                                       const FeedbackSource& source) {
     Impl& t = *impl_;
+    Impl::EyeState& eye = t.eye_state(source.eye);
+    const bool exact = t.still && source.eye == Eye::camera;
+    const FeedbackGrid grid =
+        feedback_grid(exact ? FeedbackCells::every_pixel : t.desc.feedback_cells, source.picture_px, t.frame);
+    const uint64_t bytes = uint64_t(grid.cells.x) * uint64_t(grid.cells.y) * 4;
+    if (!eye.feedback || eye.feedback.size_bytes() < bytes)
+        LOAM_TRY(assign(eye.feedback, storage_buffer(t.device, "feedback", bytes)));
     {
-        auto pass = commands.pass("texture feedback", {{depth, Access::depth_sampled},
-                                                       {gbuffer, Access::compute_sampled},
-                                                       {t.params, Access::compute_sampled},
-                                                       {t.sector_table, Access::compute_sampled},
-                                                       {t.feedback, Access::compute_storage}});
-        const VkImageView depth_view = depth.depth_view() ? depth.depth_view() : depth.view();
+        auto pass = commands.pass("texture feedback", {{source.depth, Access::depth_sampled},
+                                                       {source.gbuffer, Access::compute_sampled},
+                                                       {eye.params, Access::compute_sampled},
+                                                       {eye.sector_table, Access::compute_sampled},
+                                                       {t.indirection, Access::compute_sampled},
+                                                       {eye.feedback, Access::compute_storage}});
+        const VkImageView depth_view =
+            source.depth.depth_view() ? source.depth.depth_view() : source.depth.view();
         commands.bind(t.feedback_pipeline,
-                      {{0, t.params},
-                       {1, t.sector_table},
+                      {{0, eye.params},
+                       {1, eye.sector_table},
                        {2, depth_view, t.nearest, VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL},
-                       {3, gbuffer.view(), t.nearest},
-                       {4, frame_uniforms, uniforms_offset, VK_WHOLE_SIZE},
-                       {5, t.feedback}});
-        commands.dispatch(kFeedbackWidth / 8, kFeedbackHeight / 8);
+                       {3, source.gbuffer.view(), t.nearest},
+                       {4, source.uniforms, source.uniforms_offset, VK_WHOLE_SIZE},
+                       {5, eye.feedback},
+                       {6, t.indirection.view(), t.nearest}});
+        commands.push(t.feedback_pipeline,
+                      shared::FeedbackPush{grid.cells, grid.jitter, source.footprint_log2});
+        commands.dispatch(uint32_t(grid.cells.x + 7) / 8, uint32_t(grid.cells.y + 7) / 8);
     }
-    ring.read_back(commands, t.feedback, 0, kFeedbackValues * 4,
-                   [inbox = t.inbox, images = t.sectors.images(), frame = t.frame,
-                    view_frame = t.view_frame](std::span<const std::byte> bytes) {
-                       inbox->values.resize(bytes.size() / 4);
-                       std::memcpy(inbox->values.data(), bytes.data(), bytes.size());
+    commands.use({{t.indirection, Access::fragment_sampled}});
+    ring.read_back(commands, eye.feedback, 0, bytes,
+                   [inbox = eye.inbox, images = t.sectors.images(), frame = t.frame,
+                    view_frame = t.view_frame, exact](std::span<const std::byte> got) {
+                       inbox->values.resize(got.size() / 4);
+                       std::memcpy(inbox->values.data(), got.data(), got.size());
                        inbox->images = images;
                        inbox->frame = frame;
                        inbox->view_frame = view_frame;
+                       inbox->exact = exact;
                        inbox->fresh = true;
                    });
     return {};
@@ -232,10 +258,10 @@ gpu::Image& VirtualTexture::indirection() {
     return impl_->indirection;
 }
 gpu::Buffer& VirtualTexture::sector_table() {
-    return impl_->sector_table;
+    return impl_->eye_state(Eye::camera).sector_table;
 }
 gpu::Buffer& VirtualTexture::params() {
-    return impl_->params;
+    return impl_->eye_state(Eye::camera).params;
 }
 gpu::Buffer& VirtualTexture::direct_params() {
     return impl_->direct_params;
@@ -258,8 +284,9 @@ uint64_t VirtualTexture::last_feedback_frame() const {
 
 bool VirtualTexture::settled() const {
     const Impl& t = *impl_;
-    return t.frame > 0 && t.missing.empty() && !t.has_dirt() && t.feedback_frame >= t.changed_frame &&
-           !t.inbox->fresh;
+    const bool kept = !t.still || t.kept_since == t.same_since;
+    return t.frame > 0 && t.missing.empty() && !t.has_dirt() && t.low_res_count() == 0 && kept &&
+           t.feedback_frame >= t.changed_frame && !t.camera_eye().inbox->fresh;
 }
 
 int VirtualTexture::place_of(const PageId& page) const {
@@ -273,11 +300,20 @@ VirtualTexture::Statistics VirtualTexture::statistics() const {
     s.resident_pages = uint32_t(t.pool.used_count());
     s.capacity_pages = uint32_t(t.pool.place_count());
     s.live_sectors = uint32_t(t.sectors.live().size());
-    s.requested_pages = uint32_t(t.requests.size());
+    s.requested_pages = uint32_t(t.camera_eye().requests.size());
     s.missing_pages = uint32_t(t.missing.size());
     s.dirty_pages = uint32_t(t.dirty_order.size());
-    s.gpu_bytes = t.indirection.bytes() + t.composer->gpu_bytes() + t.sector_table.size_bytes() +
-                  t.feedback.size_bytes();
+    s.low_res_pages = t.low_res_count();
+    s.announced_missing = t.announced_missing;
+    s.indirection_texels = uint64_t(t.sectors.used_texels());
+    s.indirection_capacity = uint64_t(t.sectors.capacity_texels());
+    s.capped_images = uint32_t(t.sectors.capped_count());
+    s.image_cap_log2 = t.sectors.cap_log2();
+    s.indirection_repacks = t.sectors.repack_count();
+    s.sharpness = t.sharpness;
+    s.gpu_bytes = t.indirection.bytes() + t.composer->gpu_bytes();
+    for (const Impl::EyeState& eye : t.eyes)
+        s.gpu_bytes += eye.sector_table.size_bytes() + (eye.feedback ? eye.feedback.size_bytes() : 0);
     for (const gpu::Image& image : t.atlas) s.gpu_bytes += image.bytes();
     return s;
 }

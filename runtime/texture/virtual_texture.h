@@ -4,9 +4,11 @@
 // "Scalability".
 #pragma once
 
-#include <functional>
+#include <array>
 #include <memory>
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <glm/vec3.hpp>
@@ -14,8 +16,10 @@
 #include "runtime/base/result.h"
 #include "runtime/gpu/frame_ring.h"
 #include "runtime/maps/index_map.h"
+#include "runtime/texture/feedback.h"
 #include "runtime/texture/layer_set.h"
 #include "runtime/texture/page_id.h"
+#include "runtime/texture/sector_set.h"
 
 namespace loam {
 
@@ -28,24 +32,49 @@ inline constexpr uint32_t kUnusedIndirection = 0xfffffffeu;  // of expected_indi
 
 struct VirtualTextureDesc {
     int pages_per_side = 22;      // physical texture: very low 13, low 16, mid 22, high 30, ultra 42
-    int indirection_size = 1024;  // texels a side
+    int indirection_size = 1024;  // texels a side, up to 1024
     PageFormat format = PageFormat::bc1x3;
-    int sector_log2_width = 6;  // live sectors' images are 64x64 pages
-    int max_live_sectors = 64;
-    int budget_pages = 2;  // whole pages composed a frame
+    int max_live_sectors = 255;  // beside that, their root pages take at most a third of the physical texture
+    int budget_pages = 2;        // whole pages composed a frame
+    FeedbackCells feedback_cells = FeedbackCells::grid;
+    FeedbackRules feedback_rules;
     bool decals = true;
 };
 
 struct TextureView {
     glm::dvec3 camera_m{0};
-    double pixels_per_radian = 500;  // picture height / (2 tan(fov_y / 2)): sizes the live radius
+    double pixels_per_radian = 500;  // picture height / (2 tan(fov_y / 2)): sizes the sectors' images
+    // Every sector that may have to be live, with the announced place's; see live_radius_m().
+    std::span<const SectorDistance> near;
+    double speed_m_s = 0;
+    // Where the camera will be: its pages are requested too. Its feedback comes by record_feedback with
+    // Eye::announced.
+    std::optional<glm::dvec3> announced_m;
     uint64_t frame = 0;
+    uint64_t same_since = 0;  // the first frame of this view
+    // A still picture: every pixel is asked, and only what they want is shown, so that the picture depends on
+    // the view and not on the way there.
+    bool still = false;
     float mip_bias = 0;
     int budget_pages = -1;  // overrides VirtualTextureDesc::budget_pages when >= 0
     // While someone works: what a frame may take, and how long the last one took (0: unknown). Composition
     // adapts.
     double goal_ms = 0;  // 0: none
     double last_frame_ms = 0;
+};
+
+// Whose pages a feedback pass asks for: the picture's, or those of a place that the camera will jump to.
+enum class Eye { camera, announced };
+
+struct FeedbackSource {
+    gpu::Image& depth;    // the prepass' (Access::depth_sampled)
+    gpu::Image& gbuffer;  // normal.xy, log2 footprints (see frame_io.h)
+    const gpu::Buffer& uniforms;
+    uint64_t uniforms_offset = 0;
+    glm::ivec2 picture_px{0};
+    Eye eye = Eye::camera;
+    float footprint_log2 =
+        0;  // added to the footprints, where they are of a smaller picture than the one they speak for
 };
 
 class VirtualTexture {
@@ -60,8 +89,10 @@ class VirtualTexture {
     void on_dirt(std::span<const WorldRect> rects);
     // Index dirt as the document tells it: grows it and calls on_dirt.
     void on_index_dirt(std::span<const WorldRect> rects);
-    // Pages wanted beside the feedback's, until the next call (places the camera will jump to; tests).
+    // Pages wanted beside the feedback's, until the next call (tests, benches).
     void request_pages(std::span<const PageId> pages);
+    // Sectors farther than this from every eye are not live.
+    [[nodiscard]] double live_radius_m(double pixels_per_radian, float mip_bias) const;
 
     // Takes in feedback, chooses what to compose and requests the index pages for it; call before
     // IndexMap::update.
@@ -69,11 +100,8 @@ class VirtualTexture {
     // Makes last frame's pages usable, applies feedback, composes dirty rectangles first, then missing pages
     // within the budget, and updates indirection and sector table.
     Status update(gpu::FrameRing& ring, gpu::Commands& commands, const TextureView& view);
-    // After the prepass: 240x136 wanted pages, read back when the GPU has passed this frame.
-    // depth: the prepass' depth (Access::depth_sampled), gbuffer: normal.xy, log2 footprints (see
-    // frame_io.h).
-    Status record_feedback(gpu::FrameRing& ring, gpu::Commands& commands, gpu::Image& depth,
-                           gpu::Image& gbuffer, const gpu::Buffer& frame_uniforms, uint64_t uniforms_offset);
+    // After the prepass: the wanted pages, read back when the GPU has passed this frame.
+    Status record_feedback(gpu::FrameRing& ring, gpu::Commands& commands, const FeedbackSource& source);
 
     // --- for shaders that include shaders/texture/vt_sample.glsl (its head says which slots) ---
     [[nodiscard]] gpu::Image& atlas(
@@ -92,10 +120,26 @@ class VirtualTexture {
     // last_feedback_frame() reaches the TextureView::frame of the new view.
     [[nodiscard]] bool settled() const;
     [[nodiscard]] uint64_t last_feedback_frame() const;
+    // Of the newest feedback: how far what is shown is from what is wanted.
+    struct Sharpness {
+        uint64_t view_frame = 0;  // TextureView::frame of the picture it speaks of
+        uint32_t cells = 0;       // that see terrain
+        std::array<uint32_t, 8>
+            coarser{};  // cells by how many mips they show coarser than wanted; [7]: or more
+    };
     struct Statistics {
         uint32_t resident_pages = 0, capacity_pages = 0, live_sectors = 0, requested_pages = 0,
                  missing_pages = 0;
         uint32_t dirty_pages = 0;
+        uint32_t low_res_pages = 0;      // composed from coarser inputs, to be composed again
+        uint32_t announced_missing = 0;  // of the announced place's pages
+        uint64_t indirection_texels = 0, indirection_capacity = 0;
+        // Images made smaller than wanted as the indirection texture is full, and the widest of those (log2
+        // pages).
+        uint32_t capped_images = 0;
+        int image_cap_log2 = kMaxSectorLog2Width;
+        uint64_t indirection_repacks = 0;
+        Sharpness sharpness;
         uint64_t pages_dirtied = 0, pages_composed = 0, rects_composed = 0,
                  texels_composed = 0;  // since start
         uint64_t gpu_bytes = 0;
@@ -108,6 +152,9 @@ class VirtualTexture {
     // Tests: what the CPU's quad trees say the indirection texture holds, row by row; places outside all
     // images are kUnusedIndirection.
     [[nodiscard]] std::vector<uint32_t> expected_indirection() const;
+    // Tests: every page in a quad tree is the one its place holds, composed and of the generation that
+    // entered. Empty: all is well.
+    [[nodiscard]] std::string tree_fault() const;
     [[nodiscard]] const TextureLayout& layout() const;
     [[nodiscard]] int place_of(
         const PageId& page) const;  // physical page y * pages a side + x, if usable; else -1

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
+#include <fmt/format.h>
+
 #include "runtime/gpu/format.h"
 #include "runtime/texture/virtual_texture_impl.h"
 
@@ -48,7 +50,7 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
 
     std::vector<int> places;
     for (int i = 0; i < t.pool.place_count(); ++i)
-        if (t.pool.place(i).state != PagePool::State::free) places.push_back(i);
+        if (t.pool.place(i).state != PagePool::State::free && !t.pool.place(i).low_res) places.push_back(i);
     uint32_t stale = 0;
     uint64_t index_frame = t.view_frame;
     for (size_t first = 0; first < places.size(); first += kPagesAtOnce) {
@@ -63,7 +65,9 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
             LOAM_TRY(t.index.update(ring, commands, ++index_frame, int(kPagesAtOnce)));
             std::vector<ComposeJob> jobs;
             for (size_t i = 0; i < count; ++i) {
-                ComposeJob job = t.make_job(places[first + i], {0, 0, kPageTexels, kPageTexels});
+                const int place = places[first + i];
+                ComposeJob job = t.make_job(place, {0, 0, kPageTexels, kPageTexels},
+                                            t.index_page(t.pool.place(place).page));
                 job.target = {int(i % kPagesX), int(i / kPagesX)};
                 if (job.index_slot >= 0) jobs.push_back(job);
             }
@@ -79,8 +83,9 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
                 uint64_t at = 0;
                 for (size_t i = 0; i < count; ++i)
                     for (const bool resident : {true, false}) {
+                        const int place = places[first + i], side = t.desc.pages_per_side;
                         const glm::ivec2 page =
-                            resident ? t.make_job(places[first + i], {}).target : jobs[i].target;
+                            resident ? glm::ivec2(place % side, place / side) : jobs[i].target;
                         for (size_t which = 0; which < 3; ++which)
                             at += cmd_copy_page(commands, resident ? t.atlas[which] : fresh[which], page,
                                                 *buffer, at);
@@ -98,6 +103,28 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
         if (!compared) return error("the index pages of {} texture pages did not become resident", count);
     }
     return stale;
+}
+
+std::string VirtualTexture::tree_fault() const {
+    const Impl& t = *impl_;
+    int usable = 0, in_trees = t.sectors.default_tree().page_count();
+    for (const LiveSector& s : t.sectors.live()) in_trees += s.tree->page_count();
+    for (int i = 0; i < t.pool.place_count(); ++i) {
+        const PagePool::Place& p = t.pool.place(i);
+        if (p.state != PagePool::State::usable) continue;
+        ++usable;
+        const PageTree* tree = t.sectors.tree_of(p.page.image);
+        if (!tree) return fmt::format("place {} is usable, but its image has ended", i);
+        if (t.entered[size_t(i)] != p.generation)
+            return fmt::format("place {} holds generation {}, its tree generation {}", i, p.generation,
+                               t.entered[size_t(i)]);
+        if (p.page.depth > tree->log2_width() ||
+            tree->at(p.page.depth, p.page.x, p.page.y) != t.indirection_texel(i, tree->log2_width()))
+            return fmt::format("the page of place {} is not in its tree", i);
+    }
+    if (usable != in_trees)
+        return fmt::format("{} places are usable, {} pages are in trees", usable, in_trees);
+    return {};
 }
 
 }  // namespace loam

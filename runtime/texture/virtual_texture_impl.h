@@ -1,10 +1,13 @@
 // What the parts of VirtualTexture share. One frame:
 //
-//   advance   (request_inputs)  frame counter; pages of the last frame enter the trees; feedback; live
-//   sectors; what is missing update                      choose jobs whose index page is ready; compose;
-//   write indirection, table and parameters record_feedback             after the prepass
+//   advance (request_inputs)  frame counter; pages of the last frame enter the trees; feedback; live sectors
+//   and their sizes; what
+//                             is wanted, missing and in the way
+//   update                    choose jobs whose index page is ready; compose; write indirection, tables and
+//   parameters record_feedback           after the prepass
 #pragma once
 
+#include <array>
 #include <memory>
 #include <unordered_set>
 #include <vector>
@@ -21,10 +24,18 @@ namespace loam {
 struct VirtualTexture::Impl {
     // Feedback read back; shared with the closure that fills it, which may outlive the texture.
     struct Inbox {
-        bool fresh = false;
+        bool fresh = false, exact = false;
         std::vector<uint32_t> values;
         FeedbackImages images;
         uint64_t frame = 0, view_frame = 0;
+    };
+    // What shaders read to look at the texture from one place, and what they want.
+    struct EyeState {
+        gpu::Buffer params, sector_table, feedback;
+        glm::ivec2 table_sector{1 << 30};
+        bool table_changed = true;
+        std::shared_ptr<Inbox> inbox = std::make_shared<Inbox>();
+        std::vector<PageRequest> requests;  // of the newest feedback
     };
 
     Impl(gpu::Device& d, const Document& doc, IndexMap& i, LayerSet& l, const VirtualTextureDesc& s,
@@ -37,14 +48,37 @@ struct VirtualTexture::Impl {
           layout(t),
           pool(s.pages_per_side),
           sectors(sector_desc),
-          inbox(std::make_shared<Inbox>()),
+          entered(size_t(pool.place_count()), 0),
           popularity(size_t(pool.place_count()), 0),
           shown(size_t(pool.place_count()), 0) {}
 
     // virtual_texture_plan.cpp
     void advance(const TextureView& view);
-    void take_feedback();
+    void take_feedback(const TextureView& view, Eye eye);
+    void update_sectors(const TextureView& view);
     void drop_image(const ImageId& image);
+    void refill_image(const ImageId& image);
+    void mark_seen(const std::vector<PageRequest>& wanted);
+    void want_hidden();
+    void keep_only_wanted(const TextureView& view);
+    void retry_low_res(std::vector<ComposeJob>& jobs);
+    void choose_dirty(std::vector<ComposeJob>& jobs);
+    void choose_missing(const TextureView& view, std::vector<ComposeJob>& jobs);
+    enum class InputState {
+        ready,
+        low_res,
+        absent
+    };  // all there; only a coarser index page; none without dirt
+    struct Inputs {
+        MapPage page;  // what there is
+        InputState state;
+    };
+    [[nodiscard]] Inputs inputs_of(const PageId& page) const;
+    void touch_tables() {
+        for (EyeState& eye : eyes) eye.table_changed = true;
+    }
+    [[nodiscard]] EyeState& eye_state(Eye eye) { return eyes[size_t(eye)]; }
+    [[nodiscard]] const EyeState& camera_eye() const { return eyes[0]; }
     void enter_tree(int place);
     void leave_tree(int place);
     void gather_missing();
@@ -53,15 +87,18 @@ struct VirtualTexture::Impl {
     void make_room();
     void order_dirty();
     [[nodiscard]] MapPage index_page(const PageId& page) const;
-    [[nodiscard]] uint32_t indirection_texel(int place) const;
+    [[nodiscard]] uint32_t indirection_texel(int place, int log2_width) const;
     [[nodiscard]] std::vector<ComposeJob> choose_jobs(const TextureView& view);
-    [[nodiscard]] ComposeJob make_job(int place, const TexelRect& rect) const;
+    [[nodiscard]] ComposeJob make_job(int place, const TexelRect& rect, const MapPage& from) const;
+    // Wanted pages that were composed from coarser inputs.
+    [[nodiscard]] uint32_t low_res_count() const;
     [[nodiscard]] bool has_dirt() const { return !dirty_order.empty(); }
 
     // virtual_texture.cpp
     Status make_resources();
     void cmd_indirection(gpu::FrameRing& ring, gpu::Commands& commands);
-    void cmd_parameters(gpu::Commands& commands, const TextureView& view);
+    void cmd_eye(gpu::Commands& commands, const TextureView& view, EyeState& eye, const glm::dvec3& at_m);
+    void cmd_direct(gpu::Commands& commands, const TextureView& view);
 
     gpu::Device& device;
     const Document& document;
@@ -75,7 +112,8 @@ struct VirtualTexture::Impl {
 
     PageAtlas atlas;
     gpu::Image indirection;
-    gpu::Buffer sector_table, params, direct_params, direct_places, feedback;
+    std::array<EyeState, 2> eyes;  // by Eye
+    gpu::Buffer direct_params, direct_places;
     gpu::Sampler linear, nearest;
     gpu::Pipeline fill_pipeline, feedback_pipeline;
 
@@ -83,17 +121,22 @@ struct VirtualTexture::Impl {
     uint64_t view_frame = 0;                               // TextureView::frame of the newest
     uint64_t changed_frame = 0;                            // last update that changed anything a shader sees
     uint64_t feedback_frame = 0, feedback_view_frame = 0;  // of the newest feedback taken in
+    bool feedback_exact = false;
+    bool still = false;                           // TextureView's, of the newest
+    uint64_t same_since = 0, kept_since = ~0ull;  // the view that keep_only_wanted has been done for
+    Sharpness sharpness;
     bool advanced = false;
-    glm::ivec2 table_sector{1 << 30};
-    bool table_changed = true;
+    FeedbackCells recorded_cells = FeedbackCells::grid;  // of this frame's feedback
 
-    std::shared_ptr<Inbox> inbox;
-    std::vector<PageRequest> requests;  // of the newest feedback
-    std::vector<PageRequest> asked;     // by request_pages
-    std::vector<PageRequest> missing;   // absent, most wanted first
-    std::vector<uint32_t> popularity;   // by place, of this frame's wishes; 0: not wanted
-    std::vector<uint32_t> shown;        // by place: cells of the newest feedback that see this page
-    std::vector<int> dirty_order;       // dirty places: those seen, those wanted, the others; nearest first
+    std::vector<PageRequest> asked;    // by request_pages
+    std::vector<PageRequest> missing;  // absent, most wanted first
+    uint32_t announced_missing = 0;
+    std::unordered_set<MapPage, MapPageHash>
+        stale_inputs;                  // index pages with dirt of their own left, in this update
+    std::vector<uint32_t> entered;     // by place: generation of its page that entered a tree
+    std::vector<uint32_t> popularity;  // by place, of this frame's wishes; 0: not wanted
+    std::vector<uint32_t> shown;       // by place: cells of the newest feedback that see this page
+    std::vector<int> dirty_order;      // dirty places: those seen, those wanted, the others; nearest first
     glm::dvec2 camera_m{0};
     ComposeBudget budget;
     int64_t composed_texels = 0;  // by the last update

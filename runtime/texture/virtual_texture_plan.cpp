@@ -15,6 +15,12 @@ constexpr int64_t kShownDirtTexels = 4 * ComposeBudget::kPage;
 constexpr size_t kInputLookahead = 24;  // index pages asked for ahead, of missing pages and of dirty ones
 // A page not wanted for so long, whose parent is, only shows texels too fine for the distance.
 constexpr uint64_t kTooFineFrames = 30;
+constexpr TexelRect kWholePage{0, 0, kPageTexels, kPageTexels};
+// Hidden sectors: not seen for so long; their page is 1/2^depth of the image wide; they take at most this
+// part of the cache.
+constexpr uint64_t kHiddenFrames = 8;
+constexpr int kHiddenDepth = 4;
+constexpr int kHiddenDivisor = 16;
 
 }  // namespace
 
@@ -23,24 +29,26 @@ MapPage VirtualTexture::Impl::index_page(const PageId& page) const {
     return index.page_for_square(square.min_x, square.min_y, layout.page_side_m(page));
 }
 
-uint32_t VirtualTexture::Impl::indirection_texel(int place) const {
+uint32_t VirtualTexture::Impl::indirection_texel(int place, int log2_width) const {
     const PageId& page = pool.place(place).page;
     return uint32_t(place % desc.pages_per_side) | uint32_t(place / desc.pages_per_side) << 8 |
-           uint32_t(layout.mip(page)) << 16 | uint32_t(page.depth) << 24;
+           uint32_t(log2_width - page.depth) << 16 | uint32_t(page.depth) << 24;
 }
 
 void VirtualTexture::Impl::enter_tree(int place) {
     const PageId page = pool.place(place).page;
     PageTree* tree = sectors.tree_of(page.image);
-    if (!tree) {  // the sector went away while its page was composed
+    if (!tree || page.depth > tree->log2_width()) {  // the image ended or shrank while its page was composed
+        pool.pin(place, false);
         pool.retire(place, frame);
         return;
     }
-    tree->set(page.depth, page.x, page.y, indirection_texel(place));
+    tree->set(page.depth, page.x, page.y, indirection_texel(place, tree->log2_width()));
+    entered[size_t(place)] = pool.place(place).generation;
     if (page.image.live && page.depth == 0) {
         pool.pin(place, true);
         sectors.find({page.image.sector_x, page.image.sector_y})->in_table = true;
-        table_changed = true;
+        touch_tables();
     }
 }
 
@@ -56,65 +64,149 @@ void VirtualTexture::Impl::drop_image(const ImageId& image) {
             pool.pin(i, false);
             pool.retire(i, frame);
         }
-    table_changed = true;
 }
 
-void VirtualTexture::Impl::take_feedback() {
-    if (!inbox->fresh) return;
-    inbox->fresh = false;
-    feedback_frame = inbox->frame;
-    feedback_view_frame = inbox->view_frame;
-    const FeedbackResult result =
-        analyse_feedback({.values = inbox->values,
-                          .images = &inbox->images,
+// A resized image: its tree is new, its pages are the same squares of the world. What is finer than it can
+// name rests.
+void VirtualTexture::Impl::refill_image(const ImageId& image) {
+    for (int i = 0; i < pool.place_count(); ++i)
+        if (pool.place(i).state == PagePool::State::usable && pool.place(i).page.image == image)
+            enter_tree(i);
+}
+
+void VirtualTexture::Impl::update_sectors(const TextureView& view) {
+    const double texel_angle_rad = std::exp2(double(view.mip_bias)) / view.pixels_per_radian;
+    const SectorSet::Changes changes = sectors.update(view.near, texel_angle_rad, frame);
+    for (const ImageId& image : changes.dropped) drop_image(image);
+    for (const ImageId& image : changes.resized) refill_image(image);
+    if (changes.moved) touch_tables();
+}
+
+// A live sector that is seen: by a page of its image, or by the default image's finest page over it.
+void VirtualTexture::Impl::mark_seen(const std::vector<PageRequest>& wanted) {
+    const int sectors_wide = 1 << layout.default_log2_page;
+    for (const PageRequest& r : wanted) {
+        if (r.page.image.live) {
+            sectors.seen({r.page.image.sector_x, r.page.image.sector_y}, frame);
+            continue;
+        }
+        if (r.page.depth < layout.default_log2_width || r.cells == 0) continue;
+        for (int y = 0; y < sectors_wide; ++y)
+            for (int x = 0; x < sectors_wide; ++x)
+                sectors.seen({r.page.x * sectors_wide + x, r.page.y * sectors_wide + y}, frame);
+    }
+}
+
+void VirtualTexture::Impl::take_feedback(const TextureView& view, Eye eye) {
+    EyeState& state = eye_state(eye);
+    Inbox& inbox = *state.inbox;
+    if (eye == Eye::announced && !view.announced_m) {
+        state.requests.clear();
+        inbox.fresh = false;
+        return;
+    }
+    if (!inbox.fresh) return;
+    inbox.fresh = false;
+    FeedbackResult result =
+        analyse_feedback({.values = inbox.values,
+                          .images = &inbox.images,
                           .layout = layout,
                           .capacity_pages = uint32_t(pool.place_count()),
+                          .rules = desc.feedback_rules,
+                          .speed_m_s = eye == Eye::camera ? view.speed_m_s : 0.0,
+                          .exact = inbox.exact,
                           .is_visible = [this](const PageId& page) {
                               const int place = pool.find(page);
                               return place >= 0 && pool.place(place).state == PagePool::State::usable;
                           }});
-    requests = result.requests;
-    for (const PageId& page : result.wants_finer) {
-        const int sectors_wide = 1 << layout.default_log2_page;
-        for (int y = 0; y < sectors_wide; ++y)
-            for (int x = 0; x < sectors_wide; ++x)
-                sectors.want({page.x * sectors_wide + x, page.y * sectors_wide + y}, frame);
-    }
-    // A live sector that is seen stays.
-    for (const PageRequest& r : requests)
-        if (r.page.image.live) sectors.want({r.page.image.sector_x, r.page.image.sector_y}, frame);
+    state.requests = std::move(result.requests);
+    mark_seen(state.requests);
+    if (eye != Eye::camera) return;
+    feedback_frame = inbox.frame;
+    feedback_view_frame = inbox.view_frame;
+    feedback_exact = inbox.exact;
+    sharpness = {inbox.view_frame, result.terrain_cells, result.coarser};
 }
 
 void VirtualTexture::Impl::want(const PageRequest& request) {
     PageTree* tree = sectors.tree_of(request.page.image);
-    if (!tree) return;  // wanted by a feedback older than the sector's end
+    // Wanted by a feedback older than the image's end or last resizing.
+    if (!tree || request.page.depth > tree->log2_width()) return;
     const int place = pool.find(request.page);
     if (place < 0) {
         if (index.map().exists(index_page(request.page))) missing.push_back(request);
         return;
     }
     pool.touch(place, frame);
-    popularity[size_t(place)] = std::max(popularity[size_t(place)], request.popularity);
+    popularity[size_t(place)] = std::max({popularity[size_t(place)], request.popularity, 1u});
     if (pool.place(place).state == PagePool::State::resting && pool.place(place).dirty.empty()) {
         pool.revive(place, frame);
         enter_tree(place);
     }
 }
 
-// Everything wanted, most wanted first: the default root, the roots of live sectors, then what feedback and
-// callers ask for.
+// Fake requests: of every live sector that is not seen the page nearest to the camera, a sixteenth of the
+// image wide, so that a quick turn finds something. Source: Call of Duty talk, "Battle Against Low-Rez VT".
+void VirtualTexture::Impl::want_hidden() {
+    std::vector<const LiveSector*> hidden;
+    for (const LiveSector& s : sectors.live())
+        if (s.last_seen + kHiddenFrames < frame) hidden.push_back(&s);
+    std::sort(hidden.begin(), hidden.end(), [](const LiveSector* a, const LiveSector* b) {
+        return a->distance_m != b->distance_m ? a->distance_m < b->distance_m : a->id < b->id;
+    });
+    for (const LiveSector* s : hidden) want({PageId{s->image(), 0, 0, 0}, 1});
+    const size_t limit = size_t(pool.place_count()) / kHiddenDivisor;
+    if (hidden.size() > limit) hidden.resize(limit);
+    for (const LiveSector* s : hidden) {
+        const int depth = std::min(kHiddenDepth, s->log2_width());
+        const auto nearest = [&](double camera, int sector) {
+            const double pages = (camera / kSectorSize_m - sector) * double(1 << depth);
+            return int(std::clamp(std::floor(pages), 0.0, double((1 << depth) - 1)));
+        };
+        want({PageId{s->image(), depth, nearest(camera_m.x, s->sector.x), nearest(camera_m.y, s->sector.y)},
+              1});
+    }
+}
+
+uint32_t VirtualTexture::Impl::low_res_count() const {
+    uint32_t count = 0;
+    for (int i = 0; i < pool.place_count(); ++i) count += pool.place(i).low_res && popularity[size_t(i)] > 0;
+    return count;
+}
+
+// Everything wanted, most wanted first: the default root, roots of seen sectors, what callers, the picture
+// and the announced place ask for, then hidden sectors.
 void VirtualTexture::Impl::gather_missing() {
     missing.clear();
     std::fill(popularity.begin(), popularity.end(), 0u);
     want({PageId{}, UINT32_MAX});
-    for (const LiveSector& sector : sectors.live()) want({PageId{sector.image(), 0, 0, 0}, UINT32_MAX - 1});
+    for (const LiveSector& s : sectors.live())
+        if (s.last_seen + kHiddenFrames >= frame) want({PageId{s.image(), 0, 0, 0}, UINT32_MAX - 1});
     for (const PageRequest& r : asked) want(r);
-    for (const PageRequest& r : requests) want(r);
+    for (const PageRequest& r : camera_eye().requests) want(r);
+    const size_t before_announced = missing.size();
+    for (const PageRequest& r : eye_state(Eye::announced).requests) want({r.page, r.popularity, 0});
+    announced_missing = uint32_t(missing.size() - before_announced);
+    want_hidden();
     std::vector<PageRequest> unique;
     std::unordered_set<PageId, PageIdHash> seen;
     for (const PageRequest& r : missing)
         if (seen.insert(r.page).second) unique.push_back(r);
     missing = std::move(unique);
+}
+
+// A still picture, all of whose pixels have been asked, shows what they want and nothing else: finer pages
+// that happen to be resident would make it depend on the way there. They rest, and come back at once when
+// wanted.
+void VirtualTexture::Impl::keep_only_wanted(const TextureView& view) {
+    if (!view.still || !feedback_exact || feedback_view_frame < view.same_since || !missing.empty()) return;
+    for (int i = 0; i < pool.place_count(); ++i)
+        if (pool.place(i).state == PagePool::State::composed) return;  // in the tree from the next frame on
+    for (int i = 0; i < pool.place_count(); ++i) {
+        const PagePool::Place& p = pool.place(i);
+        if (p.state == PagePool::State::usable && !p.pinned && popularity[size_t(i)] == 0) leave_tree(i);
+    }
+    kept_since = view.same_since;
 }
 
 // Which pages the picture shows now: what a cell wants, or the nearest page above it that is usable.
@@ -130,7 +222,7 @@ void VirtualTexture::Impl::find_shown() {
             if (page.depth == 0) return;
         }
     };
-    for (const PageRequest& r : requests)
+    for (const PageRequest& r : camera_eye().requests)
         if (r.cells > 0) show(r.page, r.cells);
 }
 
@@ -174,57 +266,80 @@ void VirtualTexture::Impl::order_dirty() {
 void VirtualTexture::Impl::advance(const TextureView& view) {
     ++frame;
     view_frame = view.frame;
+    still = view.still;
+    same_since = view.same_since;
     advanced = true;
-    pool.promote(frame, [this](int place) { enter_tree(place); });
-    take_feedback();
-    const PageId finest_default{{}, layout.default_log2_width, 0, 0};
-    const double radius_m =
-        layout.texel_m(finest_default) * view.pixels_per_radian * std::exp2(-double(view.mip_bias));
-    for (const ImageId& image : sectors.update({view.camera_m.x, view.camera_m.y}, radius_m, frame))
-        drop_image(image);
     camera_m = {view.camera_m.x, view.camera_m.y};
+    pool.promote(frame, [this](int place) { enter_tree(place); });
+    take_feedback(view, Eye::camera);
+    take_feedback(view, Eye::announced);
+    update_sectors(view);
     budget.frame_took(view.last_frame_ms, view.goal_ms, composed_texels);
     gather_missing();
     find_shown();
+    keep_only_wanted(view);
     make_room();
     order_dirty();
 }
 
-ComposeJob VirtualTexture::Impl::make_job(int place, const TexelRect& rect) const {
-    const PageId& page = pool.place(place).page;
-    const MapPage from = index_page(page);
-    return {page,
+ComposeJob VirtualTexture::Impl::make_job(int place, const TexelRect& rect, const MapPage& from) const {
+    return {pool.place(place).page,
             rect,
             {place % desc.pages_per_side, place / desc.pages_per_side},
             from,
             index.map().slot_of(from)};
 }
 
-// A page is composed only from an index page that is there and has no dirt of its own left: what is in the
-// cache is always a function of the document, never of what happened to be resident.
-std::vector<ComposeJob> VirtualTexture::Impl::choose_jobs(const TextureView& view) {
-    std::unordered_set<MapPage, MapPageHash> stale;
-    index.map().for_each_resident([&](const MapPage& page, int, const TexelRect& dirty) {
-        if (!dirty.empty()) stale.insert(page);
-    });
-    const auto ready = [&](const PageId& page) {
-        const MapPage from = index_page(page);
-        return index.map().slot_of(from) >= 0 && !stale.contains(from);
-    };
-    std::vector<ComposeJob> jobs;
+// A page is composed only from index pages that have no dirt of their own left: what is in the cache is
+// always a function of the document, never of what happened to be resident. But for low-res pages, which say
+// so.
+VirtualTexture::Impl::Inputs VirtualTexture::Impl::inputs_of(const PageId& page) const {
+    const MapPage wanted = index_page(page), there = index.map().finest_resident(wanted);
+    if (index.map().slot_of(there) < 0 || stale_inputs.contains(there)) return {there, InputState::absent};
+    return {there, there == wanted ? InputState::ready : InputState::low_res};
+}
+
+// Low-res pages whose inputs have come are composed a last time; the others again from the best there is, at
+// growing intervals. Source: Call of Duty talk, "Battle Against Low-Rez VT", "Composite even when not ready".
+void VirtualTexture::Impl::retry_low_res(std::vector<ComposeJob>& jobs) {
+    bool ready = false;
+    for (int i = 0; i < pool.place_count(); ++i) {
+        const PagePool::Place& p = pool.place(i);
+        if (p.state == PagePool::State::free || !p.low_res) continue;
+        const Inputs inputs = inputs_of(p.page);
+        if (inputs.state == InputState::ready) {
+            pool.clear_low_res(i);
+            pool.mark_dirty(i, kWholePage);
+            ready = true;
+        } else if (p.retry_frame <= frame) {
+            if (inputs.state == InputState::low_res && inputs.page.level < p.input_level)
+                jobs.push_back(make_job(i, kWholePage, inputs.page));
+            pool.mark_low_res(i, std::min(p.input_level, inputs.page.level), frame);
+        }
+    }
+    if (ready) order_dirty();
+}
+
+void VirtualTexture::Impl::choose_dirty(std::vector<ComposeJob>& jobs) {
     int64_t texels = 0;
     for (const int place : dirty_order) {
-        if (!ready(pool.place(place).page)) continue;
-        const TexelRect rect = aligned_out(pool.place(place).dirty, 8, kPageTexels);
+        const PagePool::Place& p = pool.place(place);
+        const Inputs inputs = inputs_of(p.page);
+        if (p.low_res || inputs.state != InputState::ready) continue;
+        const TexelRect rect = aligned_out(p.dirty, 8, kPageTexels);
         const int64_t limit = shown[size_t(place)] > 0 ? kShownDirtTexels : budget.texels();
         if (texels > 0 && texels + rect.area() > limit) break;
         texels += rect.area();
-        jobs.push_back(make_job(place, rect));
+        jobs.push_back(make_job(place, rect, inputs.page));
         pool.clear_dirty(place);
     }
     std::erase_if(dirty_order, [&](int place) { return pool.place(place).dirty.empty(); });
+}
 
+void VirtualTexture::Impl::choose_missing(const TextureView& view, std::vector<ComposeJob>& jobs) {
     // New pages share the budget with dirt; at least one is composed every other frame.
+    int64_t texels = 0;
+    for (const ComposeJob& job : jobs) texels += job.rect.area();
     int left = view.budget_pages >= 0 ? view.budget_pages : desc.budget_pages;
     if (view.goal_ms > 0) {
         const int64_t fit = std::max<int64_t>(0, budget.texels() - texels) / ComposeBudget::kPage;
@@ -232,16 +347,30 @@ std::vector<ComposeJob> VirtualTexture::Impl::choose_jobs(const TextureView& vie
     }
     std::vector<PageRequest> still_missing;
     for (const PageRequest& request : missing) {
-        const int place = left > 0 && ready(request.page) ? pool.take(request.page, frame) : -1;
+        const Inputs inputs = inputs_of(request.page);
+        const int place =
+            left > 0 && inputs.state != InputState::absent ? pool.take(request.page, frame) : -1;
         if (place < 0) {
             still_missing.push_back(request);
             continue;
         }
         --left;
         ++counted.pages_composed;
-        jobs.push_back(make_job(place, {0, 0, kPageTexels, kPageTexels}));
+        if (inputs.state == InputState::low_res) pool.mark_low_res(place, inputs.page.level, frame);
+        jobs.push_back(make_job(place, kWholePage, inputs.page));
     }
     missing = std::move(still_missing);
+}
+
+std::vector<ComposeJob> VirtualTexture::Impl::choose_jobs(const TextureView& view) {
+    stale_inputs.clear();
+    index.map().for_each_resident([&](const MapPage& page, int, const TexelRect& dirty) {
+        if (!dirty.empty()) stale_inputs.insert(page);
+    });
+    std::vector<ComposeJob> jobs;
+    retry_low_res(jobs);
+    choose_dirty(jobs);
+    choose_missing(view, jobs);
     composed_texels = 0;
     for (const ComposeJob& job : jobs) {
         composed_texels += job.rect.area();
@@ -265,6 +394,9 @@ void VirtualTexture::request_inputs(const TextureView& view) {
         priority -= 1.0f;
     };
     for (const int place : t.dirty_order) ask(t.pool.place(place).page, kInputLookahead);
+    for (int i = 0; i < t.pool.place_count(); ++i)
+        if (t.pool.place(i).low_res && t.popularity[size_t(i)] > 0)
+            ask(t.pool.place(i).page, 2 * kInputLookahead);
     for (const PageRequest& request : t.missing) ask(request.page, 2 * kInputLookahead);
 }
 
@@ -306,9 +438,12 @@ void VirtualTexture::request_pages(std::span<const PageId> pages) {
         }
     std::stable_sort(impl_->asked.begin(), impl_->asked.end(),
                      [](const PageRequest& a, const PageRequest& b) { return a.page.depth < b.page.depth; });
-    // A page of a live image makes its sector live.
-    for (const PageId& page : pages)
-        if (page.image.live) impl_->sectors.want({page.image.sector_x, page.image.sector_y}, impl_->frame);
+}
+
+double VirtualTexture::live_radius_m(double pixels_per_radian, float mip_bias) const {
+    const TextureLayout& layout = impl_->layout;
+    const double default_texel_m = layout.texel_m({{}, layout.default_log2_width, 0, 0});
+    return default_texel_m * pixels_per_radian * std::exp2(-double(mip_bias)) * SectorSet::kSlack;
 }
 
 }  // namespace loam

@@ -1,6 +1,7 @@
 #version 460
 // Which page every cell of the picture would like: one pixel a cell, another one each frame.
-// Source: Call of Duty talk, "Feedback Buffer". Differs: an own small dispatch, jittered over frames, not part of shading.
+// Source: Call of Duty talk, "Feedback Buffer". Differs: an own small dispatch, jittered over frames, not part of shading; and it says how far
+// what is shown is from what is wanted.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #define VT_FIRST_SLOT 0
@@ -11,14 +12,14 @@ layout(binding = 2) uniform sampler2D depth_image;
 layout(binding = 3) uniform sampler2D gbuffer;
 layout(binding = 4, scalar) readonly buffer FrameBuffer { FrameUniforms frame; };
 layout(binding = 5, scalar) writeonly buffer Values { uint values[]; };
+layout(binding = 6) uniform usampler2D indirection;
+layout(push_constant, scalar) uniform Push { FeedbackPush push; };
 
 void main() {
     ivec2 cell = ivec2(gl_GlobalInvocationID.xy);
-    if (cell.x >= kFeedbackWidth || cell.y >= kFeedbackHeight) return;
-    // R2 sequence (Roberts 2018): every place of a cell is visited evenly.
-    vec2 jitter = fract(vec2(0.5) + float(vt.frame & 1023u) * vec2(0.75487767, 0.56984029));
+    if (cell.x >= push.cells.x || cell.y >= push.cells.y) return;
     vec2 size = frame.picture_px;
-    ivec2 pixel = ivec2(min((vec2(cell) + jitter) * size / vec2(kFeedbackWidth, kFeedbackHeight), size - 1.0));
+    ivec2 pixel = ivec2(min((vec2(cell) + push.jitter) * size / vec2(push.cells), size - 1.0));
     float depth = texelFetch(depth_image, pixel, 0).r;
     vec4 surface = texelFetch(gbuffer, pixel, 0);
     vec2 ndc = (vec2(pixel) + 0.5) / size * 2.0 - 1.0;
@@ -29,11 +30,12 @@ void main() {
         ivec2 sector;
         vec2 offset;
         vt_split(rel.xy / rel.w, sector, offset);
-        VtPlace place = vt_place(sector, offset, surface.z, surface.w);
+        VtPlace place = vt_place(sector, offset, surface.z + push.footprint_log2, surface.w + push.footprint_log2);
         uint mip = uint(max(place.wanted, 0.0));
         uvec2 page = uvec2(place.cell) >> mip;
-        value = mip << 24u | place.id << 16u | page.y << 8u | page.x;
-        if (place.wanted < 0.0) value |= kFeedbackFinerBit;
+        uint word = texelFetch(indirection, place.origin + place.cell, 0).r;
+        uint coarser = uint(clamp(int(word >> 16u & 0xffu) - int(mip), 0, 7));
+        value = coarser << kFeedbackCoarserShift | mip << kFeedbackMipShift | place.id << 16u | page.y << 8u | page.x;
     }
-    values[cell.y * kFeedbackWidth + cell.x] = value;
+    values[cell.y * push.cells.x + cell.x] = value;
 }

@@ -9,16 +9,21 @@
 // | 24–31 | log2 of the quad tree's width at that page (its depth) | |
 // 0xffffffff: nothing resident (only before the first root page).
 //
-// Feedback value (R32): mip : 8 | sector id : 8 | page y : 8 | page x : 8, from the high byte down; page coordinates at
-// that mip. Bit 7 of the mip byte: the pixel wants finer texels than the image's mip 0 has (a default-sector pixel
-// that asks for a live sector). 0xffffffff: no terrain.
+// Feedback value (R32), page coordinates at that mip; 0xffffffff: no terrain:
+// | bits | meaning |
+// | --- | --- |
+// | 0–7, 8–15 | page x, page y |
+// | 16–23 | sector id |
+// | 24–28 | mip wanted |
+// | 29–31 | by how many mips the page shown is coarser (7: or more) |
 //
 // Sector table entry (uint, kSectorTableSide² of them, the camera's sector in the cell (32, 32)):
 // | bits | meaning |
 // | --- | --- |
 // | 0–7 | sector id, 0: the default sector |
-// | 8–19 | x of the image in the indirection texture, texels |
-// | 20–31 | y |
+// | 8–17 | x of the image in the indirection texture, texels |
+// | 18–27 | y |
+// | 28–31 | log2 of the image's width in pages |
 // The outermost ring is always 0, so that a lookup may clamp instead of comparing.
 //
 // Physical page texture, channels of the three textures (the talk's layout):
@@ -42,7 +47,10 @@ LOAM_BEGIN_SHARED
 #define kNoTerrain 0xffffffffu
 #define kFeedbackWidth 240
 #define kFeedbackHeight 136
-#define kFeedbackFinerBit 0x80000000u
+#define kFeedbackMipShift 24u
+#define kFeedbackCoarserShift 29u
+#define kMaxIndirectionSize 1024 // what a sector table entry can name
+#define kMaxSectorLog2Width 8     // 256 x 256 pages on 64 m: 1.008 mm a texel
 #define kIndexPageBorder 4    // of index map pages (maps/index_map.h)
 #define kIndexPageTexels 136
 #define kMaxIndexLevels 16
@@ -53,17 +61,21 @@ struct VtParams {
     vec2 camera_offset_m;     // and where in it, [0, 64)
     ivec2 table_origin;       // sector of the table's first cell: camera_sector - 32
     int default_log2_width;   // of the default sector's image, in pages
-    int sector_log2_width;    // of live sectors' images, in pages
     float inv_atlas_pages;    // 1 / pages a side of the physical texture
     float mip_bias;           // added to the wanted mip; positive is blurrier
     uint frame;
     uint flags;
     float default_pages_per_sector; // finest pages of the default image a sector: 1, or less for maps above 16,384 m
-    float sector_pages;       // finest pages a side of a live sector's image
-    float default_log2_texel; // log2 of metres a finest texel
-    float sector_log2_texel;
+    float default_log2_texel; // log2 of metres a finest texel of the default image
+    float sector_log2_root;   // log2 of metres a texel of a live sector's root page
     float anisotropy;         // wanted mip = mix(long axis, short axis, this)
-    float unused;
+};
+
+// Which pixels a feedback dispatch looks at: one a cell.
+struct FeedbackPush {
+    ivec2 cells;
+    vec2 jitter;         // in a cell, [0, 1)
+    float footprint_log2; // added to the g-buffer's footprints: where that is smaller than the picture it speaks for
 };
 
 // One dirty square of the indirection texture. The commands of a frame are disjoint: their order does not matter.

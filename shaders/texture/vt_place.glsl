@@ -16,24 +16,27 @@ struct VtPlace {
     ivec2 cell;     // the finest page, inside the image
     float wanted;   // mip, not limited below, at most the image's coarsest
     uint id;        // sector id
+    int log2_width; // of the image
 };
 
 VtPlace vt_place(ivec2 sector_delta, vec2 offset_m, float log2_long, float log2_short) {
     VtPlace place;
     ivec2 slot = clamp(sector_delta + kSectorTableSide / 2, ivec2(0), ivec2(kSectorTableSide - 1));
     uint entry = vt_table[slot.y * kSectorTableSide + slot.x];
-    bool live = entry != 0u;
-    place.id = entry & 0xffu;
-    place.origin = ivec2(entry >> 8u & 0xfffu, entry >> 20u);
+    float log2_texel = mix(log2_long, log2_short, vt.anisotropy) + vt.mip_bias;
+    // Coarser texels than the sector's root has come from the default image: what a pixel shows does not depend on which sectors
+    // happen to be live. A footprint that is not a number goes there too.
+    bool live = entry != 0u && log2_texel < vt.sector_log2_root + 1.0;
+    place.id = live ? entry & 0xffu : 0u;
+    place.origin = live ? ivec2(entry >> 8u & 0x3ffu, entry >> 18u & 0x3ffu) : ivec2(0);
+    place.log2_width = live ? int(entry >> 28u) : vt.default_log2_width;
     vec2 in_sector = offset_m * (1.0 / 64.0);
     vec2 default_pages = (vec2(vt.camera_sector + sector_delta) + in_sector) * vt.default_pages_per_sector;
-    place.pages = live ? in_sector * vt.sector_pages : default_pages;
-    int log2_width = live ? vt.sector_log2_width : vt.default_log2_width;
-    place.cell = clamp(ivec2(floor(place.pages)), ivec2(0), ivec2((1 << log2_width) - 1));
-    float wanted = mix(log2_long, log2_short, vt.anisotropy) + vt.mip_bias -
-                   (live ? vt.sector_log2_texel : vt.default_log2_texel);
-    float coarsest = float(log2_width);
-    place.wanted = wanted < coarsest ? wanted : coarsest; // also where the footprint is not a number
+    place.pages = live ? in_sector * float(1 << place.log2_width) : default_pages;
+    place.cell = clamp(ivec2(floor(place.pages)), ivec2(0), ivec2((1 << place.log2_width) - 1));
+    float coarsest = float(place.log2_width);
+    float wanted = log2_texel - (live ? vt.sector_log2_root - coarsest : vt.default_log2_texel);
+    place.wanted = wanted < coarsest ? wanted : coarsest;
     return place;
 }
 

@@ -204,6 +204,7 @@ struct FlatScene {
                                                    .usage = sampled | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT}));
     }
     void frame(double above_m) {
+        w.view.camera_m.z = above_m;
         constexpr float kNear = 0.05f, kFocal = 1.8f;
         const float footprint = std::log2(float(above_m) * 2 / (kFocal * float(kHeight)));
         shared::FrameUniforms u{};
@@ -229,7 +230,12 @@ struct FlatScene {
                                .has_stencil = true});
             c.end_rendering();
         }
-        need(w.texture->record_feedback(*w.ring, c, depth, gbuffer, *slice.buffer, slice.offset));
+        need(w.texture->record_feedback(*w.ring, c,
+                                        {.depth = depth,
+                                         .gbuffer = gbuffer,
+                                         .uniforms = *slice.buffer,
+                                         .uniforms_offset = slice.offset,
+                                         .picture_px = {kWidth, kHeight}}));
         need(w.ring->end(*f));
     }
     // Frames until the texture says that the view is complete; -1: never.

@@ -78,6 +78,9 @@ struct World {
     }
     void record(gpu::Commands& commands) {
         view.frame = ++frame_number;
+        near = flat_sector_distances(document().bounds(), view.camera_m,
+                                     texture->live_radius_m(view.pixels_per_radian, view.mip_bias));
+        view.near = near;
         texture->request_inputs(view);
         need(index->update(*ring, commands, frame_number, 8));
         need(texture->update(*ring, commands, view));
@@ -108,7 +111,9 @@ struct World {
     std::unique_ptr<LayerSet> layers;
     std::unique_ptr<IndexMap> index;
     std::unique_ptr<VirtualTexture> texture;
-    TextureView view{.camera_m = {64 + 21.5, 64 + 32.5, 20}, .pixels_per_radian = 800};
+    // Near enough that its sector's image is 64 x 64 pages.
+    TextureView view{.camera_m = {64 + 21.5, 64 + 32.5, 5}, .pixels_per_radian = 800};
+    std::vector<SectorDistance> near;
     uint64_t frame_number = 0;
 };
 
@@ -116,7 +121,7 @@ inline VirtualTextureDesc small_desc(PageFormat format) {
     return {.pages_per_side = 6,
             .indirection_size = 256,
             .format = format,
-            .max_live_sectors = 4,
+            .max_live_sectors = 1,
             .budget_pages = 8};
 }
 

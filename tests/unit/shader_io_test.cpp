@@ -86,10 +86,14 @@ TEST(ShaderIo, ResolvePush) {
 TEST(ShaderIo, VtParams) {
     expect_layout("VtParams", sizeof(shared::VtParams),
                   {AT(VtParams, camera_sector), AT(VtParams, camera_offset_m), AT(VtParams, table_origin),
-                   AT(VtParams, default_log2_width), AT(VtParams, sector_log2_width), AT(VtParams, inv_atlas_pages),
+                   AT(VtParams, default_log2_width), AT(VtParams, inv_atlas_pages),
                    AT(VtParams, mip_bias), AT(VtParams, frame), AT(VtParams, flags), AT(VtParams, default_pages_per_sector),
-                   AT(VtParams, sector_pages), AT(VtParams, default_log2_texel), AT(VtParams, sector_log2_texel),
-                   AT(VtParams, anisotropy), AT(VtParams, unused)});
+                   AT(VtParams, default_log2_texel), AT(VtParams, sector_log2_root), AT(VtParams, anisotropy)});
+}
+
+TEST(ShaderIo, FeedbackPush) {
+    expect_layout("FeedbackPush", sizeof(shared::FeedbackPush),
+                  {AT(FeedbackPush, cells), AT(FeedbackPush, jitter), AT(FeedbackPush, footprint_log2)});
 }
 
 TEST(ShaderIo, ADifferentLayoutIsFound) {

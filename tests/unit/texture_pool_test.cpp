@@ -1,11 +1,10 @@
-// The invariants of the page pool under random traffic, and the choice of live sectors.
+// The invariants of the page pool under random traffic.
 #include <map>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "runtime/texture/page_pool.h"
-#include "runtime/texture/sector_set.h"
 
 namespace {
 
@@ -89,64 +88,21 @@ TEST(PagePool, APageIsNotUsableInItsOwnFrame) {
     EXPECT_EQ(visits, 1);
 }
 
-SectorSetDesc sector_desc(int max_live, int log2_size) {
-    return {.layout = {.default_log2_width = 5, .default_log2_page = 0, .sector_log2_width = 4},
-            .indirection_log2_size = log2_size,
-            .max_live = max_live,
-            .bounds = {0, 0, 2048, 2048}};
-}
-
-TEST(SectorSet, OnlyWantedSectorsInsideTheRadiusLive) {
-    SectorSet sectors(sector_desc(8, 7));
-    sectors.want({10, 10}, 1);
-    sectors.want({30, 30}, 1);
-    EXPECT_TRUE(sectors.update({10.5 * 64, 10.5 * 64}, 130, 1).empty());
-    ASSERT_EQ(sectors.live().size(), 1u);
-    EXPECT_EQ(sectors.live()[0].sector, glm::ivec2(10, 10));
-    // Not in the table before its root page is usable.
-    std::vector<uint32_t> table(kSectorTableSide * kSectorTableSide);
-    sectors.write_table({10, 10}, table);
-    EXPECT_EQ(table[32 * 64 + 32], 0u);
-    sectors.live()[0].in_table = true;
-    sectors.write_table({10, 10}, table);
-    const LiveSector& s = sectors.live()[0];
-    EXPECT_EQ(table[32 * 64 + 32], uint32_t(s.id) | uint32_t(s.origin.x) << 8 | uint32_t(s.origin.y) << 20);
-}
-
-TEST(SectorSet, WhenFullTheFarthestMakesWayForAMuchNearerOneOnly) {
-    SectorSet sectors(sector_desc(2, 7));
-    const glm::dvec2 camera(0.5 * 64, 0.5 * 64);
-    sectors.want({8, 0}, 1);
-    sectors.want({7, 0}, 1);
-    sectors.update(camera, 1000, 1);
-    ASSERT_EQ(sectors.live().size(), 2u);
-    sectors.want({6, 0}, 2);  // not much nearer
-    EXPECT_TRUE(sectors.update(camera, 1000, 2).empty());
-    sectors.want({1, 0}, 3);
-    const auto dropped = sectors.update(camera, 1000, 3);
-    ASSERT_EQ(dropped.size(), 1u);
-    EXPECT_EQ(dropped[0].sector_x, 8);
-    EXPECT_NE(sectors.find({1, 0}), nullptr);
-}
-
-TEST(SectorSet, AFullIndirectionTextureLeavesSectorsOnTheDefault) {
-    SectorSet sectors(sector_desc(200, 6));  // 64²: the default takes a quarter, 12 images of 16² remain
-    for (int i = 0; i < 20; ++i) sectors.want({i, 0}, 1);
-    sectors.update({0, 0}, 5000, 1);
-    EXPECT_EQ(sectors.live().size(), 12u);
-    for (const LiveSector& s : sectors.live()) EXPECT_LT(s.sector.x, 12) << "the nearest come first";
-}
-
-TEST(SectorSet, LeavesBeyondTheRadiusOrWhenIdle) {
-    SectorSet sectors(sector_desc(8, 7));
-    sectors.want({4, 4}, 1);
-    sectors.update({4.5 * 64, 4.5 * 64}, 100, 1);
-    EXPECT_TRUE(sectors.update({4.5 * 64 + 150, 4.5 * 64}, 100, 2).empty()) << "hysteresis";
-    EXPECT_EQ(sectors.update({4.5 * 64 + 170, 4.5 * 64}, 100, 3).size(), 1u);
-    sectors.want({4, 4}, 4);
-    sectors.update({4.5 * 64, 4.5 * 64}, 100, 4);
-    EXPECT_EQ(sectors.update({4.5 * 64, 4.5 * 64}, 100, 5 + SectorSet::kIdleFrames).size(), 1u);
-    EXPECT_TRUE(sectors.live().empty());
+TEST(PagePool, APageThatLacksInputsIsTriedAtGrowingIntervals) {
+    PagePool pool(3);
+    const int place = pool.take(page(1), 10);
+    pool.mark_low_res(place, 4, 10);
+    EXPECT_TRUE(pool.place(place).low_res);
+    EXPECT_EQ(pool.place(place).retry_frame, 25u);
+    pool.mark_low_res(place, 3, 25);
+    EXPECT_EQ(pool.place(place).retry_frame, 55u);
+    pool.mark_low_res(place, 3, 55);
+    EXPECT_EQ(pool.place(place).retry_frame, 115u);
+    pool.mark_low_res(place, 3, 115);
+    EXPECT_EQ(pool.place(place).retry_frame, 175u);
+    pool.clear_low_res(place);
+    pool.mark_low_res(place, 3, 200);
+    EXPECT_EQ(pool.place(place).retry_frame, 215u) << "from the start again";
 }
 
 }  // namespace
