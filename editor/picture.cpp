@@ -99,4 +99,36 @@ double differing_share(const Picture& a, const Picture& b, int tolerance) {
     return static_cast<double>(differing) / static_cast<double>(std::max<size_t>(1, a.rgba.size() / 4));
 }
 
+PictureStep picture_step(const Picture& a, const Picture& b) {
+    check_same_size(a, b);
+    constexpr int kTile = 8;
+    PictureStep step;
+    size_t count_of[256] = {};
+    for (int tile_y = 0; tile_y < a.height; tile_y += kTile)
+        for (int tile_x = 0; tile_x < a.width; tile_x += kTile) {
+            const int end_x = std::min(tile_x + kTile, a.width), end_y = std::min(tile_y + kTile, a.height);
+            int sum[3] = {};
+            for (int y = tile_y; y < end_y; ++y)
+                for (int x = tile_x; x < end_x; ++x) {
+                    const size_t at =
+                        (static_cast<size_t>(y) * static_cast<size_t>(a.width) + static_cast<size_t>(x)) * 4;
+                    int largest = 0;
+                    for (size_t c = 0; c < 3; ++c) {
+                        const int d = std::abs(int(a.rgba[at + c]) - int(b.rgba[at + c]));
+                        sum[c] += d;
+                        largest = std::max(largest, d);
+                    }
+                    ++count_of[largest];
+                }
+            const double pixels = static_cast<double>(end_x - tile_x) * (end_y - tile_y);
+            for (const int s : sum) step.tile = std::max(step.tile, s / pixels);
+        }
+    const size_t allowed = a.rgba.size() / 4 / 1000;  // pixels beyond
+    size_t beyond = 0;
+    int value = 255;
+    while (value > 0 && beyond + count_of[value] <= allowed) beyond += count_of[value--];
+    step.pixel = value;
+    return step;
+}
+
 }  // namespace loam

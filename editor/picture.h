@@ -30,4 +30,12 @@ class LinearAverage {
 // Share of pixels of which any channel differs by more than `tolerance`.
 [[nodiscard]] double differing_share(const Picture& a, const Picture& b, int tolerance);
 
+// How far one picture is from another as the eye sees a change: mean absolute difference of a channel over
+// the 8 x 8 pixels where it is largest, and the difference that 99.9 % of the pixels' largest channels do not
+// exceed. 0 … 255; sizes must agree.
+struct PictureStep {
+    double tile = 0, pixel = 0;
+};
+[[nodiscard]] PictureStep picture_step(const Picture& a, const Picture& b);
+
 }  // namespace loam

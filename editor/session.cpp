@@ -24,7 +24,6 @@ constexpr int kRestingFrames = 4;
 // slots for all of them.
 constexpr double kReferenceSplitDistance = 6.0;
 constexpr int kReferenceHeightSlots = 1024;
-constexpr int kReferenceSupersample = 4;
 
 Result<double> largest_height_m(const Document& document) {
     const auto lock = document.read_lock();
@@ -81,6 +80,19 @@ Result<Renderer*> Session::renderer() {
     query_heights_.reset();
     query_indices_.reset();
     return renderer_.get();
+}
+
+RendererDesc reference_renderer(RendererDesc desc) {
+    desc.height_slots = std::max(desc.height_slots, kReferenceHeightSlots);
+    desc.patch_split_distance = std::max(desc.patch_split_distance, kReferenceSplitDistance);
+    return desc;
+}
+
+FrameSettings reference_frame(FrameSettings frame) {
+    frame.shading = Shading::direct;
+    frame.render_scale = 1.0f;
+    frame.fine_filter = true;
+    return frame;
 }
 
 // --- edits ---
@@ -180,15 +192,10 @@ Result<Picture> Session::render(const RenderRequest& request) {
         return supersampled(**renderer, request, request.frame);
     }
     LOAM_TRY(make_device());
-    RendererDesc desc = desc_.renderer;
-    desc.height_slots = std::max(desc.height_slots, kReferenceHeightSlots);
-    desc.patch_split_distance = std::max(desc.patch_split_distance, kReferenceSplitDistance);
-    auto reference = Renderer::create(*device_, *ring_, *document_, desc);
+    auto reference = Renderer::create(*device_, *ring_, *document_, reference_renderer(desc_.renderer));
     if (!reference) return reference.error();
     RenderRequest direct = request;
-    direct.frame.shading = Shading::direct;
-    direct.frame.render_scale = 1.0f;
-    direct.frame.fine_filter = true;
+    direct.frame = reference_frame(request.frame);
     direct.supersample = std::max(request.supersample, kReferenceSupersample);
     return supersampled(**reference, direct, direct.frame);
 }

@@ -37,6 +37,12 @@ struct GroundBuffers {
     std::vector<float> depth;       // reversed Z, 0 where there is no ground
 };
 
+// What the reference has beyond a view's own settings: patches six node sides around the camera at full detail
+// (a few hundred), slots for all of them, 4 x 4 samples a pixel.
+inline constexpr int kReferenceSupersample = 4;
+[[nodiscard]] RendererDesc reference_renderer(RendererDesc desc);
+[[nodiscard]] FrameSettings reference_frame(FrameSettings frame);
+
 struct RenderRequest {
     Camera camera;
     int width = 1280, height = 720;

@@ -18,11 +18,13 @@ const std::vector<BenchName>& benches() {
         {"compose", "pages and rectangles composed; the parts of an edit's cost", bench_compose},
         {"cost", "frames with the virtual texture against direct shading, by layers and decals", bench_cost},
         {"crater", "one crater on a 1 km and on a 16 km map: pages, milliseconds, memory", bench_crater},
-        {"edits", "from a dab's command to the picture, and what that takes, still and in flight", bench_edits},
+        {"edits", "from a dab's command to the picture, and what that takes, still and in flight",
+         bench_edits},
         {"encoders", "quality of the page encoder beside other block compressors", bench_encoders},
         {"flat", "a flight over the same ground on maps of 1, 4 and 16 km", bench_flat},
         {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
         {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},
+        {"pop", "steps between the frames of a slow approach against the reference's own", bench_pop},
         {"resolve", "the resolve alone against three bilinear samples with the same light", bench_resolve},
         {"start", "from the command to the first picture, with warm and with empty shader caches",
          bench_start},
@@ -90,7 +92,8 @@ Spread spread_of(std::vector<double> values) {
 double percentile(std::vector<double> values, double share) {
     if (values.empty()) return 0;
     std::sort(values.begin(), values.end());
-    return values[std::min(values.size() - 1, static_cast<size_t>(static_cast<double>(values.size()) * share))];
+    return values[std::min(values.size() - 1,
+                           static_cast<size_t>(static_cast<double>(values.size()) * share))];
 }
 
 FrameSettings moving_frame(float render_scale) {

@@ -14,12 +14,13 @@ struct BenchRequest {
     std::filesystem::path project;
     SessionDesc session;
     int width = 960, height = 540;
-    int frames = 300;              // frame
-    double goal_ms = 33;           // frame
-    int dabs = 0;                  // edits: a row; 0: up to 200, as many as some seconds allow
-    std::optional<Camera> camera;  // accuracy; none: three views of the map
-    std::filesystem::path dem;     // ground
-    bool quick = false;            // fewer settings and frames: for tests
+    int frames = 300;                // frame
+    double goal_ms = 33;             // frame
+    int dabs = 0;                    // edits: a row; 0: up to 200, as many as some seconds allow
+    std::optional<Camera> camera;    // accuracy; none: three views of the map
+    std::filesystem::path dem;       // ground
+    std::filesystem::path pictures;  // pop: a folder for the pictures that figures speak of; empty: none
+    bool quick = false;              // fewer settings and frames: for tests
 };
 
 // Rows of one table have the same keys.
@@ -45,6 +46,7 @@ Result<BenchReport> bench_encoders(const BenchRequest& request);
 Result<BenchReport> bench_flat(const BenchRequest& request);
 Result<BenchReport> bench_frame(const BenchRequest& request);
 Result<BenchReport> bench_ground(const BenchRequest& request);
+Result<BenchReport> bench_pop(const BenchRequest& request);
 Result<BenchReport> bench_resolve(const BenchRequest& request);
 Result<BenchReport> bench_start(const BenchRequest& request);
 
@@ -94,6 +96,18 @@ class TemporaryProject {
 // picture.
 Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height,
                           const Command& command);
+
+// The reference, frame after frame: a session of its own renderer keeps its pages from one picture to the
+// next.
+class ReferenceView {
+  public:
+    static Result<ReferenceView> open(const std::filesystem::path& project, SessionDesc desc);
+    Result<Picture> picture(const Camera& camera, int width, int height);
+
+  private:
+    explicit ReferenceView(std::unique_ptr<Session> session) : session_(std::move(session)) {}
+    std::unique_ptr<Session> session_;
+};
 
 // Milliseconds from submit to fence of the newest frame's resolve again, or of its floor; without settings of
 // an empty frame.

@@ -84,4 +84,25 @@ Result<double> resolve_probe_ms(Session& session, const FrameSettings* settings,
     return now_ms() - start_ms;
 }
 
+Result<ReferenceView> ReferenceView::open(const std::filesystem::path& project, SessionDesc desc) {
+    desc.renderer = reference_renderer(desc.renderer);
+    desc.mode = OpenMode::read_only;
+    auto session = Session::open(project, desc);
+    if (!session) return session.error();
+    return ReferenceView(std::move(*session));
+}
+
+Result<Picture> ReferenceView::picture(const Camera& camera, int width, int height) {
+    RenderRequest request{.camera = camera, .width = width, .height = height, .frame = reference_frame({})};
+    auto renderer = session_->renderer();
+    if (!renderer) return renderer.error();
+    for (int i = 0, resting = 0; i < request.max_frames && resting < 2; ++i) {
+        LOAM_TRY(session_->step(camera, width, height, request.frame, 1));
+        resting = (*renderer)->settled() ? resting + 1 : 0;
+    }
+    request.max_frames = 1;  // samples within a pixel are no other view
+    request.supersample = kReferenceSupersample;
+    return session_->render(request);
+}
+
 }  // namespace loam::bench

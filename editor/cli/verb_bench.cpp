@@ -30,6 +30,7 @@ Status run(const Args& args) {
     request.goal_ms = args.number("--goal", 33);
     request.dabs = args.integer("--dabs", 0);
     request.dem = args.text("--dem");
+    request.pictures = args.text("--pictures");
     request.quick = args.has("--quick");
     if (args.has("--camera")) request.camera = parse_camera(args.text("--camera")).value();
     auto report = chosen->run(request);
@@ -58,6 +59,7 @@ Verb bench_verb() {
              {"--goal", ValueKind::number, "MS", "frame: milliseconds a frame; default 33"},
              {"--dabs", ValueKind::integer, "N", "edits: a row; default up to 200 within 5 s"},
              {"--dem", ValueKind::text, "DIR", "ground: folder of real elevation data"},
+             {"--pictures", ValueKind::text, "DIR", "pop: pictures of the worst steps"},
              {"--quick", ValueKind::none, "", "fewer views and repeats"},
              {"--json", ValueKind::none, "", "print as JSON"}}),
         .run = run,

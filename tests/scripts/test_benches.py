@@ -47,3 +47,16 @@ def test_flat(plain):
     for row in rows:
         assert 0 < row["median ms"] <= row["p95 ms"]
         assert row["patches in view"] == rows[0]["patches in view"]  # the same picture
+
+
+def test_pop(plain, tmp_path):
+    ((_, rows),) = bench("pop", plain, "--size", "320x180", "--pictures", tmp_path)
+    for name in ("fast", "fine"):
+        whole, *stretches = [row for row in rows if row["filter"] == name]
+        assert whole["height"] == "all"
+        assert whole["frames"] == sum(row["frames"] for row in stretches) == 5
+        assert whole["pops"] == sum(row["pops"] for row in stretches)
+        assert (whole["worst, of the allowed"] > 1) == (whole["pops"] > 0)
+        assert 0 < whole["largest tile step"] <= 255
+        assert whole["the reference's"] > 0
+    assert bool(list(tmp_path.glob("reference-*.png"))) == any(row["pops"] > 0 for row in rows)

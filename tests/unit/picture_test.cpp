@@ -44,5 +44,20 @@ TEST(Picture, differing_share_counts_pixels_beyond_the_tolerance) {
     EXPECT_DOUBLE_EQ(differing_share(a, b, 0), 0.2);
 }
 
+TEST(Picture, a_step_is_the_mean_of_the_worst_tile_and_what_a_thousandth_of_the_pixels_exceed) {
+    const Picture a = flat(40, 50, 100);  // 2000 pixels: two may differ by more
+    EXPECT_EQ(picture_step(a, a).tile, 0);
+    EXPECT_EQ(picture_step(a, a).pixel, 0);
+    Picture b = a;
+    for (size_t i = 0; i < 2; ++i) b.rgba[4 * i] = 200;
+    EXPECT_DOUBLE_EQ(picture_step(a, b).tile, 200.0 / 64);
+    EXPECT_EQ(picture_step(a, b).pixel, 0);
+    b.rgba[4 * 2 + 1] = 93;
+    EXPECT_EQ(picture_step(a, b).pixel, 7);
+    b = flat(40, 50, 103);  // everywhere, the tiles cut off at the edge too
+    EXPECT_DOUBLE_EQ(picture_step(a, b).tile, 3);
+    EXPECT_EQ(picture_step(a, b).pixel, 3);
+}
+
 }  // namespace
 }  // namespace loam
