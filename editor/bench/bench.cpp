@@ -16,6 +16,8 @@ const std::vector<BenchName>& benches() {
         {"accuracy", "PSNR and fine detail against the reference, and milliseconds, for several settings",
          bench_accuracy},
         {"compose", "pages and rectangles composed; the parts of an edit's cost", bench_compose},
+        {"converge", "share of the picture at its wanted mip after jumps, in a turn and a dolly",
+         bench_converge},
         {"cost", "frames with the virtual texture against direct shading, by layers and decals", bench_cost},
         {"crater", "one crater on a 1 km and on a 16 km map: pages, milliseconds, memory", bench_crater},
         {"edits", "from a dab's command to the picture, and what that takes, still and in flight",

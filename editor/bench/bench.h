@@ -39,6 +39,7 @@ struct BenchName {
 
 Result<BenchReport> bench_accuracy(const BenchRequest& request);
 Result<BenchReport> bench_compose(const BenchRequest& request);
+Result<BenchReport> bench_converge(const BenchRequest& request);
 Result<BenchReport> bench_cost(const BenchRequest& request);
 Result<BenchReport> bench_crater(const BenchRequest& request);
 Result<BenchReport> bench_edits(const BenchRequest& request);
