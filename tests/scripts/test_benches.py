@@ -60,3 +60,16 @@ def test_pop(plain, tmp_path):
         assert 0 < whole["largest tile step"] <= 255
         assert whole["the reference's"] > 0
     assert bool(list(tmp_path.glob("reference-*.png"))) == any(row["pops"] > 0 for row in rows)
+
+
+def test_converge(plain):
+    (_, jumps), (_, motions) = bench("converge", plain, "--size", "192x108")
+    assert [row["announced, frames"] for row in jumps] == [0, 30]
+    for row in jumps:
+        assert 0 <= row["first frame"] <= 1
+        reached = [row[key] for key in ("95 %", "99 %", "100 %") if row[key] is not None]
+        assert reached == sorted(reached)
+    assert jumps[0]["first frame"] < jumps[1]["first frame"]  # said in advance, it is sharper at once
+    for row in motions:
+        assert 0 <= row["least"] <= row["mean"] <= 1
+        assert row["least"] <= row["frame 0"] <= 1
