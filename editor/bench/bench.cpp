@@ -13,8 +13,6 @@ namespace fs = std::filesystem;
 
 const std::vector<BenchName>& benches() {
     static const std::vector<BenchName> table = {
-        {"accuracy", "PSNR and fine detail against the reference, and milliseconds, for several settings",
-         bench_accuracy},
         {"compose", "pages and rectangles composed; the parts of an edit's cost", bench_compose},
         {"converge", "share of the picture at its wanted mip after jumps, in a turn and a dolly",
          bench_converge},
@@ -27,6 +25,9 @@ const std::vector<BenchName>& benches() {
         {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
         {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},
         {"pop", "steps between the frames of a slow approach against the reference's own", bench_pop},
+        {"quality",
+         "quality levels and page formats: milliseconds, memory, error against the reference by cause",
+         bench_quality},
         {"resolve", "the resolve alone against three bilinear samples with the same light", bench_resolve},
         {"start", "from the command to the first picture, with warm and with empty shader caches",
          bench_start},
@@ -145,6 +146,25 @@ Result<TemporaryProject> TemporaryProject::create_copy(const fs::path& of) {
     std::error_code code;
     fs::copy(of, project->path_, fs::copy_options::recursive | fs::copy_options::overwrite_existing, code);
     if (code) return error("cannot copy {}: {}", of.string(), code.message());
+    return project;
+}
+
+Result<TemporaryProject> TemporaryProject::create_import(ImportRequest request, const fs::path& like) {
+    auto project = make_folder();
+    if (!project) return project;
+    fs::remove(project->path_);  // an import makes its folder
+    request.project = project->path_;
+    auto report = import_heights(request, {});
+    if (!report) return report.error();
+    auto settings = load_project(project->path_);
+    if (!settings) return settings.error();
+    for (const LayerEntry& layer : settings->layers) {
+        std::error_code code;
+        if (fs::exists(like / layer.file, code))
+            fs::copy_file(like / layer.file, project->path_ / layer.file,
+                          fs::copy_options::overwrite_existing, code);
+        if (code) return error("cannot copy {}: {}", (like / layer.file).string(), code.message());
+    }
     return project;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "editor/import.h"
 #include "editor/report.h"
 #include "editor/session.h"
 
@@ -14,13 +15,14 @@ struct BenchRequest {
     std::filesystem::path project;
     SessionDesc session;
     int width = 960, height = 540;
-    int frames = 300;                // frame
-    double goal_ms = 33;             // frame
-    int dabs = 0;                    // edits: a row; 0: up to 200, as many as some seconds allow
-    std::optional<Camera> camera;    // accuracy; none: three views of the map
-    std::filesystem::path dem;       // ground
-    std::filesystem::path pictures;  // pop: a folder for the pictures that figures speak of; empty: none
-    bool quick = false;              // fewer settings and frames: for tests
+    int frames = 300;              // frame
+    double goal_ms = 33;           // frame
+    int dabs = 0;                  // edits: a row; 0: up to 200, as many as some seconds allow
+    std::optional<Camera> camera;  // resolve, quality; none: views of their own
+    std::filesystem::path dem;     // ground
+    std::filesystem::path
+        pictures;        // pop, quality: a folder for the pictures that figures speak of; empty: none
+    bool quick = false;  // fewer settings and frames: for tests
 };
 
 // Rows of one table have the same keys.
@@ -37,7 +39,6 @@ struct BenchName {
 };
 [[nodiscard]] const std::vector<BenchName>& benches();
 
-Result<BenchReport> bench_accuracy(const BenchRequest& request);
 Result<BenchReport> bench_compose(const BenchRequest& request);
 Result<BenchReport> bench_converge(const BenchRequest& request);
 Result<BenchReport> bench_cost(const BenchRequest& request);
@@ -48,6 +49,7 @@ Result<BenchReport> bench_flat(const BenchRequest& request);
 Result<BenchReport> bench_frame(const BenchRequest& request);
 Result<BenchReport> bench_ground(const BenchRequest& request);
 Result<BenchReport> bench_pop(const BenchRequest& request);
+Result<BenchReport> bench_quality(const BenchRequest& request);
 Result<BenchReport> bench_resolve(const BenchRequest& request);
 Result<BenchReport> bench_start(const BenchRequest& request);
 
@@ -62,6 +64,9 @@ struct Spread {
 };
 [[nodiscard]] Spread spread_of(std::vector<double> values);
 [[nodiscard]] double percentile(std::vector<double> values, double share);  // 0 of none
+
+// Without the writer's lock, so that several may look at one project.
+Result<std::unique_ptr<Session>> open_read_only(const std::filesystem::path& project, SessionDesc desc);
 
 // How the window draws while something moves, and at rest (editor/window/window_loop.cpp).
 [[nodiscard]] FrameSettings moving_frame(float render_scale);
@@ -81,6 +86,8 @@ class TemporaryProject {
     // A flat map of `side_m` with the layers of `like`, heights every metre; nothing is written, so every
     // page is all default.
     static Result<TemporaryProject> create_flat(const std::filesystem::path& like, double side_m);
+    // A picture of heights imported, with the layers of `like` where its own have the same names.
+    static Result<TemporaryProject> create_import(ImportRequest request, const std::filesystem::path& like);
     static Result<TemporaryProject> create_part(const MapPart& request);  // without operators
     static Result<TemporaryProject> create_copy(const std::filesystem::path& of);
     TemporaryProject(TemporaryProject&& other) noexcept;

@@ -95,9 +95,7 @@ Json share_row(const std::string& motion, const std::vector<double>& shares) {
 
 Result<std::unique_ptr<Session>> settled_at(const BenchRequest& request, const FrameSettings& settings,
                                             Place& from, Place& to) {
-    SessionDesc desc = request.session;
-    desc.mode = OpenMode::read_only;
-    auto session = Session::open(request.project, desc);
+    auto session = open_read_only(request.project, request.session);
     if (!session) return session;
     auto a = place_of(**session, 0), b = place_of(**session, 1);
     if (!a) return a.error();

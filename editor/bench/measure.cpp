@@ -84,10 +84,14 @@ Result<double> resolve_probe_ms(Session& session, const FrameSettings* settings,
     return now_ms() - start_ms;
 }
 
+Result<std::unique_ptr<Session>> open_read_only(const std::filesystem::path& project, SessionDesc desc) {
+    desc.mode = OpenMode::read_only;
+    return Session::open(project, desc);
+}
+
 Result<ReferenceView> ReferenceView::open(const std::filesystem::path& project, SessionDesc desc) {
     desc.renderer = reference_renderer(desc.renderer);
-    desc.mode = OpenMode::read_only;
-    auto session = Session::open(project, desc);
+    auto session = open_read_only(project, desc);
     if (!session) return session.error();
     return ReferenceView(std::move(*session));
 }

@@ -1,0 +1,262 @@
+// Speed against error: every quality level with every page format, against the reference (per pixel,
+// uncached, uncompressed, full geometry, supersampled), on three views of real ground or of the project
+// given; and the error of the high level taken apart by cause, each picture against the one that has that
+// cause less.
+#include <algorithm>
+#include <cmath>
+
+#include "editor/bench/bench.h"
+#include "editor/picture.h"
+
+namespace loam::bench {
+
+namespace {
+
+constexpr int kTimedFrames = 7;
+constexpr int kSettleBudget = 12;  // pages a frame while nothing is timed
+constexpr Quality kLevels[] = {Quality::very_low, Quality::low, Quality::mid, Quality::high, Quality::ultra};
+constexpr const char* kLevelNames[] = {"very low", "low", "mid", "high", "ultra"};
+struct Format {
+    PageFormat format;
+    const char* name;
+};
+constexpr Format kFormats[] = {{PageFormat::rgba8, "3xRGBA8"}, {PageFormat::bc1x3, "3xBC1"}};
+
+// Real ground by file (README of the elevation data): metres = offset + sample * step.
+struct Ground {
+    const char* file;
+    double spacing_m, offset_m, step_m;
+    std::optional<SampleCrop> crop;
+};
+const Ground kGrounds[] = {
+    {"halfdome.png", 27, 1175, 0.05, SampleCrop{200, 150, 600, 600}},  // 16 km
+    {"gabilan.png", 1, 187, 0.01, std::nullopt},
+};
+
+struct View {
+    std::string name;
+    Camera camera;
+};
+
+// Close ground; a slope looked along, three metres above it; from a height over the map to its far corner.
+Result<std::vector<View>> views_of(const BenchRequest& request, Session& session) {
+    if (request.camera) return std::vector<View>{{"camera", *request.camera}};
+    const WorldRect bounds = session.document().bounds();
+    const glm::dvec2 c = bounds.center();
+    auto ground = session.height_m(c.x, c.y);
+    if (!ground) return ground.error();
+    std::vector<View> views{
+        {"close ground", Camera::look_at({c.x, c.y - 4, *ground + 2}, {c.x, c.y, *ground})}};
+    if (request.quick) return views;
+
+    constexpr int kGrid = 48;
+    constexpr double kWantedSlope = 0.6;  // rise over run
+    double best = 1e9, highest_m = -1e9;
+    glm::dvec3 slope_at{0}, slope_normal{0, 0, 1}, top{0};
+    for (int j = kGrid / 4; j < kGrid * 3 / 4; ++j)
+        for (int i = kGrid / 4; i < kGrid * 3 / 4; ++i) {
+            const glm::dvec2 at = glm::dvec2(bounds.width() * i, bounds.height() * j) / double(kGrid);
+            auto height = session.height_m(at.x, at.y);
+            auto normal = session.normal(at.x, at.y);
+            if (!height) return height.error();
+            if (!normal) return normal.error();
+            if (*height > highest_m) {
+                highest_m = *height;
+                top = {at, *height};
+            }
+            const double slope = std::hypot(normal->x, normal->y) / std::max(normal->z, 1e-3);
+            if (std::abs(slope - kWantedSlope) >= best) continue;
+            best = std::abs(slope - kWantedSlope);
+            slope_at = {at, *height};
+            slope_normal = *normal;
+        }
+    const glm::dvec3 along =
+        glm::normalize(glm::dvec3(-slope_normal.y, slope_normal.x, 0) + glm::dvec3(1e-9, 0, 0));
+    views.push_back(
+        {"hillside, grazing", Camera::look_at(slope_at + slope_normal * 3.0, slope_at + along * 30.0, 0.8)});
+    const glm::dvec2 far(top.x < c.x ? bounds.max_x : bounds.min_x,
+                         top.y < c.y ? bounds.max_y : bounds.min_y);
+    auto far_m = session.height_m(far.x, far.y);
+    if (!far_m) return far_m.error();
+    views.push_back(
+        {"vista", Camera::look_at(top + glm::dvec3(0, 0, 0.01 * bounds.width()), {far, *far_m}, 0.8)});
+    return views;
+}
+
+struct Error {
+    double psnr = 0, detail = 0;
+};
+Error error_of(const Picture& picture, const Picture& truth) {
+    return {psnr_db(picture, truth), laplacian_energy(picture) / std::max(1e-9, laplacian_energy(truth))};
+}
+
+Json decibels(double psnr) {
+    return std::isfinite(psnr) ? Json(rounded(psnr, 2)) : Json("equal");
+}
+
+struct Scene {
+    std::string name;
+    View view;
+    Picture reference, direct_full, direct, pages;  // from the truth down; pages: high, uncompressed
+};
+
+RenderRequest request_of(const BenchRequest& request, const Camera& camera) {
+    RenderRequest r{
+        .camera = camera, .width = request.width, .height = request.height, .frame = still_frame()};
+    r.frame.page_budget = kSettleBudget;
+    return r;
+}
+
+// The pictures that need no pages: the truth, and direct shading of one sample with its geometry and with the
+// frame's own.
+Status shade_directly(const BenchRequest& request, const std::filesystem::path& project,
+                      std::vector<Scene>& scenes) {
+    auto reference = ReferenceView::open(project, request.session);
+    if (!reference) return reference.error();
+    auto session = open_read_only(project, request.session);
+    if (!session) return session.error();
+    SessionDesc full = request.session;
+    full.renderer = reference_renderer(full.renderer);
+    auto full_session = open_read_only(project, full);
+    if (!full_session) return full_session.error();
+    for (Scene& scene : scenes) {
+        auto truth = reference->picture(scene.view.camera, request.width, request.height);
+        if (!truth) return truth.error();
+        scene.reference = std::move(*truth);
+        RenderRequest direct = request_of(request, scene.view.camera);
+        direct.frame.shading = Shading::direct;
+        direct.frame.page_budget = 0;
+        auto own = (*session)->render(direct);
+        if (!own) return own.error();
+        scene.direct = std::move(*own);
+        auto whole = (*full_session)->render(direct);
+        if (!whole) return whole.error();
+        scene.direct_full = std::move(*whole);
+    }
+    return {};
+}
+
+Status measure_level(const BenchRequest& request, const std::filesystem::path& project, size_t level,
+                     const Format& format, std::vector<Scene>& scenes, BenchReport& report) {
+    SessionDesc desc = request.session;
+    desc.renderer.quality = kLevels[level];
+    desc.renderer.page_format = format.format;
+    auto session = open_read_only(project, desc);
+    if (!session) return session.error();
+    for (Scene& scene : scenes) {
+        const RenderRequest r = request_of(request, scene.view.camera);
+        auto picture = (*session)->render(r);
+        if (!picture) return picture.error();
+        const bool settled = (*session)->last_render_settled();
+        std::vector<double> still_ms, moving_ms;
+        for (int i = 0; i < (request.quick ? 3 : kTimedFrames); ++i) {
+            const auto timed = [&](const FrameSettings& settings, std::vector<double>& out) -> Status {
+                const double start_ms = now_ms();
+                LOAM_TRY((*session)->step(r.camera, r.width, r.height, settings, 1));
+                out.push_back(now_ms() - start_ms);
+                return {};
+            };
+            LOAM_TRY(timed(r.frame, still_ms));
+            LOAM_TRY(timed(moving_frame(1), moving_ms));
+        }
+        auto renderer = (*session)->renderer();
+        if (!renderer) return renderer.error();
+        const auto statistics = (*renderer)->statistics().texture;
+        const Error error = error_of(*picture, scene.reference);
+        report[0].rows.push_back({{"ground", scene.name},
+                                  {"view", scene.view.name},
+                                  {"level", kLevelNames[level]},
+                                  {"pages", format.name},
+                                  {"still frame ms", rounded(percentile(still_ms, 0.5), 1)},
+                                  {"moving frame ms", rounded(percentile(moving_ms, 0.5), 1)},
+                                  {"texture MB", rounded(double(statistics.gpu_bytes) / (1 << 20), 1)},
+                                  {"PSNR dB", rounded(error.psnr, 2)},
+                                  {"detail", rounded(error.detail, 3)},
+                                  {"settled", settled}});
+        if (!request.pictures.empty())
+            LOAM_TRY(save_png(request.pictures / fmt::format("{}-{}-{}-{}.png", scene.name, scene.view.name,
+                                                             kLevelNames[level], format.name),
+                              *picture));
+        const auto cause = [&](const std::string& name, const Picture& with, const Picture& without) {
+            const Error e = error_of(with, without);
+            report[1].rows.push_back({{"ground", scene.name},
+                                      {"view", scene.view.name},
+                                      {"cause", name},
+                                      {"PSNR dB", decibels(e.psnr)},
+                                      {"detail", rounded(e.detail, 3)}});
+        };
+        if (kLevels[level] != Quality::high) {
+            if (format.format == PageFormat::rgba8 && kLevels[level] == Quality::ultra) {
+                cause("page resolution: high against ultra", scene.pages, *picture);
+            }
+            continue;
+        }
+        if (format.format != PageFormat::rgba8) {
+            cause(fmt::format("block compression: {} against uncompressed", format.name), *picture,
+                  scene.pages);
+            continue;
+        }
+        scene.pages = std::move(*picture);
+        cause("samples: one a pixel against sixteen", scene.direct_full, scene.reference);
+        cause("geometry: the frame's cut against the full one", scene.direct, scene.direct_full);
+        cause("pages and their filter: uncompressed against direct", scene.pages, scene.direct);
+    }
+    return {};
+}
+
+Status measure_project(const BenchRequest& request, const std::string& name,
+                       const std::filesystem::path& project, BenchReport& report) {
+    std::vector<Scene> scenes;
+    {
+        auto session = open_read_only(project, request.session);
+        if (!session) return session.error();
+        auto views = views_of(request, **session);
+        if (!views) return views.error();
+        for (View& view : *views) scenes.push_back({.name = name, .view = std::move(view)});
+    }
+    LOAM_TRY(shade_directly(request, project, scenes));
+    if (!request.pictures.empty())
+        for (const Scene& scene : scenes) {
+            const auto save = [&](const char* what, const Picture& picture) {
+                return save_png(request.pictures / fmt::format("{}-{}-{}.png", name, scene.view.name, what),
+                                picture);
+            };
+            LOAM_TRY(save("reference", scene.reference));
+            LOAM_TRY(save("direct", scene.direct));
+        }
+    for (size_t level = 0; level < std::size(kLevels); ++level)
+        for (const Format& format : kFormats) {
+            if (request.quick && kLevels[level] != Quality::high) continue;
+            LOAM_TRY(measure_level(request, project, level, format, scenes, report));
+        }
+    return {};
+}
+
+}  // namespace
+
+Result<BenchReport> bench_quality(const BenchRequest& request) {
+    BenchReport report{
+        {fmt::format("against the reference, {}x{}, one sample a pixel", request.width, request.height), {}},
+        {"the error at the high level by cause: with it against without it", {}}};
+    if (request.dem.empty()) {
+        LOAM_TRY(measure_project(request, request.project.filename().string(), request.project, report));
+        return report;
+    }
+    for (const Ground& ground : kGrounds) {
+        ImportRequest import{
+            .heights = request.dem / ground.file,
+            .project = {},
+            .spacing_m = ground.spacing_m,
+            .scale = {.has_step = true, .offset_m = ground.offset_m, .step_m = ground.step_m},
+            .fill_nan_m = std::nullopt,
+            .crop = ground.crop,
+            .layer_size_texels = 64};
+        auto project = TemporaryProject::create_import(import, request.project);
+        if (!project) return project.error();
+        LOAM_TRY(measure_project(request, std::filesystem::path(ground.file).stem().string(), project->path(),
+                                 report));
+    }
+    return report;
+}
+
+}  // namespace loam::bench
