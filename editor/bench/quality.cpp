@@ -13,7 +13,7 @@ namespace loam::bench {
 namespace {
 
 constexpr int kTimedFrames = 7;
-constexpr int kSettleBudget = 12;  // pages a frame while nothing is timed
+constexpr int kSettleBudget = 40;  // pages a frame while nothing is timed
 constexpr Quality kLevels[] = {Quality::very_low, Quality::low, Quality::mid, Quality::high, Quality::ultra};
 constexpr const char* kLevelNames[] = {"very low", "low", "mid", "high", "ultra"};
 struct Format {
@@ -97,7 +97,8 @@ Json decibels(double psnr) {
 struct Scene {
     std::string name;
     View view;
-    Picture reference, direct_full, direct, pages;  // from the truth down; pages: high, uncompressed
+    // From the truth down; texels: direct, filtered as pages are; pages: high, uncompressed.
+    Picture reference, direct_full, direct, texels, pages;
 };
 
 RenderRequest request_of(const BenchRequest& request, const Camera& camera) {
@@ -124,14 +125,17 @@ Status shade_directly(const BenchRequest& request, const std::filesystem::path& 
         if (!truth) return truth.error();
         scene.reference = std::move(*truth);
         RenderRequest direct = request_of(request, scene.view.camera);
-        direct.frame.shading = Shading::direct;
         direct.frame.page_budget = 0;
-        auto own = (*session)->render(direct);
-        if (!own) return own.error();
-        scene.direct = std::move(*own);
-        auto whole = (*full_session)->render(direct);
-        if (!whole) return whole.error();
-        scene.direct_full = std::move(*whole);
+        const auto shade = [&](Session& in, Shading shading, Picture& out) -> Status {
+            direct.frame.shading = shading;
+            auto picture = in.render(direct);
+            if (!picture) return picture.error();
+            out = std::move(*picture);
+            return {};
+        };
+        LOAM_TRY(shade(**full_session, Shading::direct, scene.direct_full));
+        LOAM_TRY(shade(**session, Shading::direct, scene.direct));
+        LOAM_TRY(shade(**session, Shading::direct_texels, scene.texels));
     }
     return {};
 }
@@ -199,7 +203,8 @@ Status measure_level(const BenchRequest& request, const std::filesystem::path& p
         scene.pages = std::move(*picture);
         cause("samples: one a pixel against sixteen", scene.direct_full, scene.reference);
         cause("geometry: the frame's cut against the full one", scene.direct, scene.direct_full);
-        cause("pages and their filter: uncompressed against direct", scene.pages, scene.direct);
+        cause("filter: between texels and mips against direct", scene.texels, scene.direct);
+        cause("paging: uncompressed pages against direct with the same filter", scene.pages, scene.texels);
     }
     return {};
 }
@@ -223,6 +228,7 @@ Status measure_project(const BenchRequest& request, const std::string& name,
             };
             LOAM_TRY(save("reference", scene.reference));
             LOAM_TRY(save("direct", scene.direct));
+            LOAM_TRY(save("texels", scene.texels));
         }
     for (size_t level = 0; level < std::size(kLevels); ++level)
         for (const Format& format : kFormats) {

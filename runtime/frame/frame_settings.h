@@ -5,7 +5,9 @@
 
 namespace loam {
 
-enum class Shading { virtual_texture, direct };  // direct: the reference's per-pixel evaluation
+// direct: the reference's per-pixel evaluation; direct_texels: the same at the texels that pages would have,
+// trilinear between them, so that only paging is between it and the virtual texture.
+enum class Shading { virtual_texture, direct, direct_texels };
 // mips: of the page shown; indirection: the texel as a colour. Numbered as in shaders/frame/debug_view.glsl.
 enum class DebugView { none, mips, sectors, normals, occlusion, indirection, shadow, albedo };
 

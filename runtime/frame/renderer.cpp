@@ -336,7 +336,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
         .goal_ms = settings.fine_filter ? 0.0 : kFrameGoal_ms,
         .last_frame_ms = last_frame_ms};
     r.texture->request_inputs(view);
-    if (settings.shading == Shading::direct) {
+    if (settings.shading != Shading::virtual_texture) {
         r.request_direct_pages(view.pixels_per_radian, settings.footprint_bias);
         r.upload_direct_decals(ring, view.pixels_per_radian, settings.footprint_bias);
     }
@@ -372,7 +372,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     r.last_uniforms = u;
     commands.use({{r.targets.picture, Access::fragment_sampled}});
 
-    const bool asked = settings.shading == Shading::direct ||
+    const bool asked = settings.shading != Shading::virtual_texture ||
                        (r.texture->settled() && r.texture->last_feedback_frame() >= r.view_frame);
     r.settled = !r.changed && asked && !r.heights->has_work() && !r.indices->has_work() &&
                 (!r.desc.shadows || r.shadows->settled());

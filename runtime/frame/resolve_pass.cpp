@@ -91,7 +91,8 @@ Status ResolvePass::make_fixed() {
 Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers) {
     gpu::Pipeline& pipeline = pipelines_[size_t(kind)];
     if (pipeline) return &pipeline;
-    const bool direct = kind == Kind::direct || kind == Kind::direct_decals;
+    const bool texels = kind == Kind::texels || kind == Kind::texels_decals;
+    const bool direct = texels || kind == Kind::direct || kind == Kind::direct_decals;
     const bool floor = kind == Kind::floor || kind == Kind::floor_fine;
     gpu::GraphicsDesc d{
         .name = direct ? "resolve direct" : "resolve",
@@ -100,12 +101,13 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers) 
                            : floor ? "frame/resolve_floor.frag"
                                    : "frame/resolve.frag",
         .push_bytes = sizeof(shared::ResolvePush),
-        // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal, 22: decals.
+        // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal, 22: decals, 25: texels.
         .constants = {{0, kind == Kind::fast || kind == Kind::floor ? 0u : 1u},
                       {1, kind == Kind::debug ? 1u : 0u},
                       {20, kind == Kind::fast ? 0u : 1u},
                       {21, layers.has_metal ? 1u : 0u},
-                      {22, kind == Kind::direct_decals ? 1u : 0u}},
+                      {22, kind == Kind::direct_decals || kind == Kind::texels_decals ? 1u : 0u},
+                      {25, texels ? 1u : 0u}},
         .color_formats = {kPictureFormat},
         .depth_format = device_->caps().depth_stencil,
         .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
@@ -126,10 +128,11 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers) 
 Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
                                const FrameSettings& settings, ResolvePart part) {
     const bool floor = part == ResolvePart::floor;
-    const bool direct = settings.shading == Shading::direct;
+    const bool direct = settings.shading != Shading::virtual_texture;
+    const bool texels = settings.shading == Shading::direct_texels;
     const Kind kind = floor                     ? settings.fine_filter ? Kind::floor_fine : Kind::floor
-                      : direct && in.has_decals ? Kind::direct_decals
-                      : direct                  ? Kind::direct
+                      : direct && in.has_decals ? texels ? Kind::texels_decals : Kind::direct_decals
+                      : direct                  ? texels ? Kind::texels : Kind::direct
                       : settings.debug != DebugView::none ? Kind::debug
                       : settings.fine_filter              ? Kind::fine
                                                           : Kind::fast;

@@ -42,7 +42,7 @@ class ResolvePass {
                       ResolvePart part);
 
   private:
-    enum class Kind { fast, fine, debug, direct, direct_decals, floor, floor_fine, count };
+    enum class Kind { fast, fine, debug, direct, direct_decals, texels, texels_decals, floor, floor_fine, count };
 
     explicit ResolvePass(gpu::Device& device) : device_(&device) {}
     Status make_fixed();

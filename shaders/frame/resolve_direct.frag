@@ -6,11 +6,18 @@
 #include "shaders/frame/resolve_common.glsl"
 #include "shaders/texture/direct.glsl"
 #include "shaders/texture/direct_decals.glsl"
+#include "shaders/texture/direct_texels.glsl"
+
+layout(constant_id = 25) const bool kDirectTexels = false;
 
 void main() {
     Pixel p = read_pixel();
     float log2_footprint = mix(p.log2_long, p.log2_short, 0.5) + push.footprint_bias;
-    MaterialSample m = with_decals(direct_material(p.rel_m.xy, log2_footprint), p.rel_m.xy, log2_footprint);
+    MaterialSample m;
+    if (kDirectTexels)
+        m = direct_texels(p.rel_m.xy, log2_footprint);
+    else
+        m = with_decals(direct_material(p.rel_m.xy, log2_footprint), p.rel_m.xy, log2_footprint);
     Surface s = Surface(m.albedo, bent_normal(p.ground, m.normal), m.gloss, m.occlusion, m.metalness);
     out_color = vec4(lit_pixel(p, s), 1.0);
 }

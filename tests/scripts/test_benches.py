@@ -73,3 +73,16 @@ def test_converge(plain):
     for row in motions:
         assert 0 <= row["least"] <= row["mean"] <= 1
         assert row["least"] <= row["frame 0"] <= 1
+
+
+def test_quality(plain):
+    (_, levels), (_, causes) = bench("quality", plain, "--size", "192x108")
+    assert {row["level"] for row in levels} == {"high"}
+    uncompressed = next(row for row in levels if row["pages"] == "3xRGBA8")
+    for row in levels:
+        assert row["settled"]
+        assert 15 < row["PSNR dB"] < 99
+        assert row["texture MB"] <= uncompressed["texture MB"]
+    errors = {row["cause"].split(":")[0]: row["PSNR dB"] for row in causes}
+    assert set(errors) == {"samples", "geometry", "filter", "paging", "block compression"}
+    assert errors["paging"] == "equal" or errors["paging"] > 30  # the same texels, but for which pages are there
