@@ -21,6 +21,7 @@ const std::vector<BenchName>& benches() {
         {"edits", "from a dab's command to the picture, and what that takes, still and in flight",
          bench_edits},
         {"encoders", "quality of the page encoder beside other block compressors", bench_encoders},
+        {"feedback", "analysis of a feedback buffer on one core", bench_feedback},
         {"flat", "a flight over the same ground on maps of 1, 4 and 16 km", bench_flat},
         {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
         {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},

@@ -86,3 +86,11 @@ def test_quality(plain):
     errors = {row["cause"].split(":")[0]: row["PSNR dB"] for row in causes}
     assert set(errors) == {"samples", "geometry", "filter", "paging", "block compression"}
     assert errors["paging"] == "equal" or errors["paging"] > 30  # the same texels, but for which pages are there
+
+
+def test_feedback(plain):
+    ((_, rows),) = bench("feedback", plain)
+    assert {row["values"] for row in rows} == {"coherent", "noise", "all different"}
+    for row in rows:
+        assert 0 < row["least ms"] <= row["median ms"] <= row["p99 ms"]
+    assert [row["different"] for row in rows if row["values"] == "all different"] == [240 * 136] * 2
