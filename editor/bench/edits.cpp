@@ -72,8 +72,10 @@ class Rig {
         : session_(session), request_(request), brush_(brush), flying_(flying) {}
 
     [[nodiscard]] glm::dvec2 target() const {
-        const glm::dvec2 center = session_.document().bounds().center();
-        return {center.x + along_m_, center.y};
+        // Every brush has a place of its own, which no nearer view has left its pages at.
+        const WorldRect bounds = session_.document().bounds();
+        const double apart_m = 0.04 * bounds.height() * static_cast<double>(&brush_ - kBrushes);
+        return {bounds.center().x + along_m_, bounds.min_y + 0.3 * bounds.height() + apart_m};
     }
     Result<Camera> camera() {
         const glm::dvec2 at = target();
