@@ -31,8 +31,9 @@ Result<Quality> parse_quality(std::string_view name) {
 }
 
 Result<PageFormat> parse_page_format(std::string_view name) {
-    return parse_choice<PageFormat, 2>("format", name,
-                                       {{{"bc1", PageFormat::bc1x3}, {"rgba8", PageFormat::rgba8}}});
+    return parse_choice<PageFormat, 3>(
+        "format", name,
+        {{{"bc1", PageFormat::bc1x3}, {"bc3", PageFormat::bc3x2}, {"rgba8", PageFormat::rgba8}}});
 }
 
 Result<DebugView> parse_debug_view(std::string_view name) {

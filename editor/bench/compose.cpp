@@ -31,10 +31,10 @@ double layers_met(const IndexTexel* texels) {
 
 Status bench_pages(Stage& stage, PageFormat format, BenchTable& table) {
     const TextureLayout layout = texture_layout(stage.document.bounds());
-    auto atlas = make_page_atlas(stage.device, format, 2, 2);
+    auto atlas = make_page_atlas(stage.device, page_textures(format), 2, 2);
     if (!atlas) return atlas.error();
-    auto composer =
-        Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout, format, true);
+    auto composer = Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout,
+                                     page_textures(format), true);
     if (!composer) return composer.error();
     // The plainest and the busiest page of two texels an index texel.
     ComposeJob plainest, busiest;
@@ -210,9 +210,11 @@ Result<BenchReport> bench_compose(const BenchRequest& request) {
     auto stage = Stage::create(**device, **document);
     if (!stage) return stage.error();
     BenchReport report;
-    for (const PageFormat format : {PageFormat::rgba8, PageFormat::bc1x3}) {
-        if (format == PageFormat::bc1x3 && !(*device)->caps().bc) continue;
-        const char* name = format == PageFormat::rgba8 ? "RGBA8 pages" : "BC1 pages";
+    for (const PageFormat format : {PageFormat::rgba8, PageFormat::bc1x3, PageFormat::bc3x2}) {
+        if (is_compressed(format) && !(*device)->caps().bc) continue;
+        const char* name = format == PageFormat::rgba8   ? "RGBA8 pages"
+                           : format == PageFormat::bc1x3 ? "BC1 pages"
+                                                         : "BC3 pages";
         report.push_back({fmt::format("{}: rectangles composed, best of {}", name, kRepeats), {}});
         LOAM_TRY(bench_pages(*stage, format, report.back()));
         report.push_back({fmt::format("{}: edits, best of {}", name, kRepeats), {}});

@@ -70,10 +70,10 @@ Result<std::vector<ComposeJob>> pages_of(Stage& stage, const TextureLayout& layo
 
 Result<std::array<Texels, 3>> composed(Stage& stage, const TextureLayout& layout, PageFormat format,
                                        const std::vector<ComposeJob>& jobs) {
-    auto atlas = make_page_atlas(stage.device, format, kAtlasPages, kAtlasPages);
+    auto atlas = make_page_atlas(stage.device, page_textures(format), kAtlasPages, kAtlasPages);
     if (!atlas) return atlas.error();
-    auto composer =
-        Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout, format, true);
+    auto composer = Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout,
+                                     page_textures(format), true);
     if (!composer) return composer.error();
     std::array<Texels, 3> bytes;
     auto ms = stage.timed_frame([&](gpu::Commands& commands) -> Status {
@@ -180,7 +180,7 @@ Result<BenchReport> bench_encoders(const BenchRequest& request) {
     std::vector<Json> rows{{{"encoder", "page encoder"}}};
     for (const Encoder& encoder : encoders_for({})) rows.push_back({{"encoder", encoder.name}});
     for (size_t which = 0; which < 3; ++which) {
-        const glm::vec3 weights(Composer::kEncoderWeights[which]);
+        const glm::vec3 weights(Composer::kRowWeights[which]);
         Blocks blocks((*packed)[which].size() / 8);
         std::memcpy(blocks.data(), (*packed)[which].data(), (*packed)[which].size());
         rows[0][kTextures[which]] = rounded(psnr_db_of((*plain)[which], blocks, *jobs, weights), 2);

@@ -20,7 +20,8 @@ struct Format {
     PageFormat format;
     const char* name;
 };
-constexpr Format kFormats[] = {{PageFormat::rgba8, "3xRGBA8"}, {PageFormat::bc1x3, "3xBC1"}};
+constexpr Format kFormats[] = {
+    {PageFormat::rgba8, "3xRGBA8"}, {PageFormat::bc1x3, "3xBC1"}, {PageFormat::bc3x2, "2xBC3"}};
 
 // Real ground by file (README of the elevation data): metres = offset + sample * step.
 struct Ground {

@@ -51,7 +51,7 @@ std::vector<Option> with_device_options(std::vector<Option> options) {
         {"--validation", ValueKind::none, "", "Vulkan validation; its messages fail the command"},
         {"--quality", ValueKind::text, "Q",
          "very_low, low, mid, high or ultra: the size of the virtual texture"},
-        {"--format", ValueKind::text, "F", "bc1 or rgba8: the format of texture pages; default by device"},
+        {"--format", ValueKind::text, "F", "bc1, bc3 or rgba8: the format of texture pages; default by device"},
     };
     options.insert(options.end(), std::begin(device), std::end(device));
     return options;

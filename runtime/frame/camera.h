@@ -12,7 +12,8 @@ struct Camera {
     double yaw_rad = 0;
     double pitch_rad = -0.3;
     double fov_y_rad = 1.0;
-    double near_m = 0.004;  // below the 1 cm that an eye may come to the ground; reversed Z loses nothing by it
+    double near_m =
+        0.004;  // below the 1 cm that an eye may come to the ground; reversed Z loses nothing by it
 
     [[nodiscard]] glm::dvec3 forward() const;
     [[nodiscard]] glm::dvec3 right() const;

@@ -136,7 +136,7 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::Fra
     auto shadows = ShadowCascades::create(device, desc.shadows ? r.defaults.shadow_texels : 1);
     if (!shadows) return shadows.error();
     r.shadows = std::make_unique<ShadowCascades>(std::move(*shadows));
-    auto resolve = ResolvePass::create(device, *r.layers);
+    auto resolve = ResolvePass::create(device, *r.layers, r.texture->textures());
     if (!resolve) return resolve.error();
     r.resolve = std::make_unique<ResolvePass>(std::move(*resolve));
     return renderer;
@@ -147,11 +147,9 @@ Status Renderer::Impl::create_texture(gpu::FrameRing& ring) {
     if (!set) return set.error();
     texture.reset();
     layers = std::move(*set);
-    PageFormat format = desc.page_format.value_or(defaults.page_format);
-    if (format == PageFormat::bc1x3 && !device.caps().bc) format = PageFormat::rgba8;
     VirtualTextureDesc wanted{.pages_per_side = pages_per_side(desc.quality),
                               .indirection_size = desc.quality >= Quality::high ? 1024 : 512,
-                              .format = format,
+                              .format = desc.page_format.value_or(defaults.page_format),
                               .budget_pages = desc.page_budget > 0 ? desc.page_budget : defaults.page_budget};
     auto made = VirtualTexture::create(device, document, *indices, *layers, wanted);
     if (!made) return made.error();

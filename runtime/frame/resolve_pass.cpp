@@ -26,7 +26,8 @@ void use_material(gpu::Commands& commands, const ResolveInputs& in, bool direct)
                       {in.texture.indirection(), Access::fragment_sampled},
                       {in.texture.atlas(0), Access::fragment_sampled},
                       {in.texture.atlas(1), Access::fragment_sampled},
-                      {in.texture.atlas(2), Access::fragment_sampled}});
+                      {in.texture.atlas(2), Access::fragment_sampled},
+                      {in.texture.atlas(3), Access::fragment_sampled}});
 }
 
 std::vector<gpu::Bound> cached_material(const ResolveInputs& in) {
@@ -36,7 +37,8 @@ std::vector<gpu::Bound> cached_material(const ResolveInputs& in) {
             {s + 2, in.texture.indirection().view(), in.texture.nearest_sampler()},
             {s + 3, in.texture.atlas(0).view(), in.texture.sampler()},
             {s + 4, in.texture.atlas(1).view(), in.texture.sampler()},
-            {s + 5, in.texture.atlas(2).view(), in.texture.sampler()}};
+            {s + 5, in.texture.atlas(2).view(), in.texture.sampler()},
+            {s + 6, in.texture.atlas(3).view(), in.texture.sampler()}};
 }
 
 std::vector<gpu::Bound> direct_material(const ResolveInputs& in) {
@@ -60,11 +62,12 @@ std::vector<gpu::Bound> floor_material(const ResolveInputs& in) {
 
 }  // namespace
 
-Result<ResolvePass> ResolvePass::create(gpu::Device& device, const LayerSet& layers) {
+Result<ResolvePass> ResolvePass::create(gpu::Device& device, const LayerSet& layers,
+                                        const PageTextures& textures) {
     ResolvePass pass(device);
     LOAM_TRY(pass.make_fixed());
     for (Kind kind : {Kind::fast, Kind::fine})
-        if (auto made = pass.pipeline(kind, layers); !made) return made.error();
+        if (auto made = pass.pipeline(kind, layers, textures); !made) return made.error();
     return pass;
 }
 
@@ -88,7 +91,11 @@ Status ResolvePass::make_fixed() {
     return {};
 }
 
-Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers) {
+Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
+                                             const PageTextures& textures) {
+    if (textures.layout != layout_ || textures.placement != placement_) pipelines_ = {};
+    layout_ = textures.layout;
+    placement_ = textures.placement;
     gpu::Pipeline& pipeline = pipelines_[size_t(kind)];
     if (pipeline) return &pipeline;
     const bool texels = kind == Kind::texels || kind == Kind::texels_decals;
@@ -101,20 +108,23 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers) 
                            : floor ? "frame/resolve_floor.frag"
                                    : "frame/resolve.frag",
         .push_bytes = sizeof(shared::ResolvePush),
-        // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal, 22: decals, 25: texels.
+        // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal, 22: decals, 25:
+        // texels, 30, 31: the page's layout and channels.
         .constants = {{0, kind == Kind::fast || kind == Kind::floor ? 0u : 1u},
                       {1, kind == Kind::debug ? 1u : 0u},
                       {20, kind == Kind::fast ? 0u : 1u},
                       {21, layers.has_metal ? 1u : 0u},
                       {22, kind == Kind::direct_decals || kind == Kind::texels_decals ? 1u : 0u},
-                      {25, texels ? 1u : 0u}},
+                      {25, texels ? 1u : 0u},
+                      {30, textures.layout},
+                      {31, textures.placement}},
         .color_formats = {kPictureFormat},
         .depth_format = device_->caps().depth_stencil,
         .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
     d.bindings = {gpu::storage_buffer(0), gpu::sampled_image(1), gpu::sampled_image(2), gpu::sampled_image(3),
                   gpu::sampled_image(4)};
     // Then the material's: shaders/texture/direct.glsl or vt_sample.glsl, from slot 5.
-    const uint32_t buffers = direct ? 3 : floor ? 0 : 2, images = direct ? 5 : floor ? 3 : 4;
+    const uint32_t buffers = direct ? 3 : floor ? 0 : 2, images = direct ? 5 : floor ? 3 : 5;
     for (uint32_t i = 0; i < buffers + images; ++i)
         d.bindings.push_back(i < buffers ? gpu::storage_buffer(kMaterialSlot + i)
                                          : gpu::sampled_image(kMaterialSlot + i));
@@ -136,7 +146,7 @@ Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
                       : settings.debug != DebugView::none ? Kind::debug
                       : settings.fine_filter              ? Kind::fine
                                                           : Kind::fast;
-    auto resolve = pipeline(kind, in.layers);
+    auto resolve = pipeline(kind, in.layers, in.texture.textures());
     if (!resolve) return resolve.error();
     use_material(commands, in, direct);
 

@@ -35,23 +35,37 @@ enum class ResolvePart { all, ground, floor };
 class ResolvePass {
   public:
     // The sky's pipeline and those that a window needs at once.
-    static Result<ResolvePass> create(gpu::Device& device, const LayerSet& layers);
+    static Result<ResolvePass> create(gpu::Device& device, const LayerSet& layers,
+                                      const PageTextures& textures);
 
     // Reads the prepass' targets, writes the picture (left in Access::color_target).
     Status cmd_record(gpu::Commands& commands, const ResolveInputs& inputs, const FrameSettings& settings,
                       ResolvePart part);
 
   private:
-    enum class Kind { fast, fine, debug, direct, direct_decals, texels, texels_decals, floor, floor_fine, count };
+    enum class Kind {
+        fast,
+        fine,
+        debug,
+        direct,
+        direct_decals,
+        texels,
+        texels_decals,
+        floor,
+        floor_fine,
+        count
+    };
 
     explicit ResolvePass(gpu::Device& device) : device_(&device) {}
     Status make_fixed();
-    Result<gpu::Pipeline*> pipeline(Kind kind, const LayerSet& layers);
+    // Those made for pages of another layout are dropped.
+    Result<gpu::Pipeline*> pipeline(Kind kind, const LayerSet& layers, const PageTextures& textures);
 
     gpu::Device* device_;
     gpu::Sampler point_;
     gpu::Pipeline sky_;
     std::array<gpu::Pipeline, size_t(Kind::count)> pipelines_;
+    uint32_t layout_ = 0, placement_ = 0;  // PageTextures' that the pipelines are made for
 };
 
 }  // namespace loam

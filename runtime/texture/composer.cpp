@@ -15,26 +15,17 @@ using gpu::Access;
 
 static_assert(kIndexPageBorder == kIndexBorder && kIndexPageTexels == kIndexTexels);
 
-// Blocks (BC1) or texels (RGBA8) of one mip of a rectangle.
-glm::ivec2 encoded_size(const TexelRect& rect, int mip, PageFormat format) {
-    const int step = (format == PageFormat::bc1x3 ? 4 : 1) << mip;
+// Units (blocks, or texels where nothing is compressed) of one mip of a rectangle.
+glm::ivec2 encoded_size(const TexelRect& rect, int mip, const PageTextures& textures) {
+    const int step = textures.unit_texels << mip;
     return {rect.width() / step, rect.height() / step};
 }
 
-int unit_bytes(PageFormat format) {
-    return format == PageFormat::bc1x3 ? 8 : 4;
-}
-
-// The first mip that goes through the encoder: mip 0 of RGBA8 is copied from scratch as it is.
-int first_encoded_mip(PageFormat format) {
-    return format == PageFormat::bc1x3 ? 0 : 1;
-}
-
 // Per texture, of the encoded mips, in units.
-uint32_t encoded_units(const TexelRect& rect, PageFormat format) {
+uint32_t encoded_units(const TexelRect& rect, const PageTextures& textures) {
     uint32_t units = 0;
-    for (int mip = first_encoded_mip(format); mip < 2; ++mip) {
-        const glm::ivec2 size = encoded_size(rect, mip, format);
+    for (int mip = textures.first_encoded_mip; mip < 2; ++mip) {
+        const glm::ivec2 size = encoded_size(rect, mip, textures);
         units += uint32_t(size.x * size.y);
     }
     return units;
@@ -54,48 +45,29 @@ struct Composer::Work {
     uint32_t tile_count = 0, one_layer_tiles = 0;
 };
 
-Result<PageAtlas> make_page_atlas(gpu::Device& device, PageFormat format, uint32_t pages_x,
-                                  uint32_t pages_y) {
-    static constexpr const char* kNames[3] = {"page albedo", "page gloss normal", "page metal normal"};
-    PageAtlas atlas;
-    for (size_t i = 0; i < 3; ++i) {
-        auto image = gpu::Image::create(
-            device,
-            {.name = kNames[i],
-             .format = format == PageFormat::bc1x3 ? VK_FORMAT_BC1_RGB_UNORM_BLOCK : VK_FORMAT_R8G8B8A8_UNORM,
-             .width = pages_x * kPageTexels,
-             .height = pages_y * kPageTexels,
-             .mip_count = 2,
-             .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                      VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-        if (!image.ok()) return image.error();
-        atlas[i] = std::move(*image);
-    }
-    return atlas;
-}
-
 Composer::Composer(const Document& document, IndexMap& index, LayerSet& layers, const TextureLayout& layout,
-                   PageFormat format)
-    : document_(document), index_(index), layers_(layers), layout_(layout), format_(format) {}
+                   const PageTextures& textures)
+    : document_(document), index_(index), layers_(layers), layout_(layout), textures_(textures) {}
 
 Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Document& document,
                                                    IndexMap& index, LayerSet& layers,
-                                                   const TextureLayout& layout, PageFormat format,
+                                                   const TextureLayout& layout, const PageTextures& textures,
                                                    bool decals) {
-    std::unique_ptr<Composer> composer(new Composer(document, index, layers, layout, format));
+    std::unique_ptr<Composer> composer(new Composer(document, index, layers, layout, textures));
     auto scratch =
         gpu::Image::create(device, {.name = "page scratch",
                                     .format = VK_FORMAT_R8G8B8A8_UNORM,
                                     .width = kScratchWidth,
                                     .height = kScratchHeight,
-                                    .layer_count = 3,
+                                    .layer_count = uint32_t(textures.scratch_layers),
                                     .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
                                              VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
     if (!scratch.ok()) return scratch.error();
     composer->scratch_ = std::move(*scratch);
-    const uint64_t units = encoded_units({0, 0, kScratchWidth, kScratchHeight}, format) * 3ull;
+    const uint64_t units =
+        encoded_units({0, 0, kScratchWidth, kScratchHeight}, textures) * uint64_t(textures.count);
     auto encoded = gpu::Buffer::create(device, {.name = "page blocks",
-                                                .size_bytes = units * uint64_t(unit_bytes(format)),
+                                                .size_bytes = units * uint64_t(textures.unit_bytes),
                                                 .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
     if (!encoded.ok()) return encoded.error();
     composer->encoded_ = std::move(*encoded);
@@ -120,15 +92,15 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     auto general = compose(0);
     if (!general.ok()) return general.error();
     composer->general_ = std::move(*general);
-    for (int mip = first_encoded_mip(format); mip < 2; ++mip) {
+    for (int mip = textures.first_encoded_mip; mip < 2; ++mip) {
+        const bool blocks = is_compressed(textures.format);
         auto encode = gpu::Pipeline::create(
-            device, gpu::ComputeDesc{
-                        .name = format == PageFormat::bc1x3 ? "page bc1" : "page rgba8",
-                        .shader = format == PageFormat::bc1x3 ? "texture/bc1.comp" : "texture/mip_rgba8.comp",
-                        .bindings = {gpu::sampled_image(0), gpu::storage_buffer(1), gpu::storage_buffer(2),
-                                     gpu::storage_buffer(3)},
-                        .push_bytes = sizeof(shared::EncodePush),
-                        .constants = {{0, uint32_t(mip)}}});
+            device, gpu::ComputeDesc{.name = blocks ? "page blocks" : "page rgba8",
+                                     .shader = blocks ? "texture/page_blocks.comp" : "texture/mip_rgba8.comp",
+                                     .bindings = {gpu::sampled_image(0), gpu::storage_buffer(1),
+                                                  gpu::storage_buffer(2), gpu::storage_buffer(3)},
+                                     .push_bytes = sizeof(shared::EncodePush),
+                                     .constants = {{0, uint32_t(mip)}, {30, textures.layout}}});
         if (!encode.ok()) return encode.error();
         composer->encode_[mip] = std::move(*encode);
     }
@@ -188,7 +160,7 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
                    .layer = 0,
                    .last_layer = uint32_t(layers_.count - 1),
                    .first_unit = 0,
-                   .units = encoded_units(job.rect, format_)};
+                   .units = encoded_units(job.rect, textures_)};
 
     // One texel more on each side than the filter reads: the shader's floats may fall to the other side of a
     // texel's edge.
@@ -256,7 +228,7 @@ Composer::Work Composer::upload(gpu::FrameRing& ring, std::span<Placed> batch) {
         shared::ComposeRect& rect = batch[i].rect;
         rect.first_place = uint32_t(i * size_t(layers_.count));
         rect.first_unit = units;
-        units += rect.units * 3;
+        units += rect.units * uint32_t(textures_.count);
         const uint32_t tiles = uint32_t(batch[i].job.rect.area() / (kTileTexels * kTileTexels));
         work.tile_count += tiles;
         if (batch[i].one_layer) work.one_layer_tiles += tiles;
@@ -340,31 +312,29 @@ void Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::sp
 void Composer::cmd_encode(gpu::Commands& commands, const Work& work) {
     auto pass = commands.pass("texture encode",
                               {{scratch_, Access::compute_sampled}, {encoded_, Access::compute_storage}});
-    for (int mip = first_encoded_mip(format_); mip < 2; ++mip) {
+    shared::EncodePush push{.tile_count = work.tile_count, .weights = {}};
+    std::copy_n(textures_.layout == kPagePairs ? kPairWeights : kRowWeights, kMaxPageTextures, push.weights);
+    for (int mip = textures_.first_encoded_mip; mip < 2; ++mip) {
         commands.bind(encode_[mip], {{0, scratch_.view(), nearest_},
                                      {1, encoded_},
                                      {2, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
                                      {3, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes}});
-        commands.push(encode_[mip], shared::EncodePush{.tile_count = work.tile_count,
-                                                       .weights = {kEncoderWeights[0], kEncoderWeights[1],
-                                                                   kEncoderWeights[2]}});
+        commands.push(encode_[mip], push);
         // Threads a group and units a tile, as the two shaders have them.
-        const bool bc1 = format_ == PageFormat::bc1x3;
-        const uint32_t threads = bc1 ? 8 : 64, units = !bc1 ? 16 : mip == 0 ? 4 : 1;
-        commands.dispatch((work.tile_count * units + threads - 1) / threads, 3);
+        const bool blocks = is_compressed(textures_.format);
+        const uint32_t threads = blocks ? 8 : 64, units = !blocks ? 16 : mip == 0 ? 4 : 1;
+        commands.dispatch((work.tile_count * units + threads - 1) / threads, uint32_t(textures_.count));
     }
 }
 
 void Composer::cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas) {
-    auto pass = commands.pass("texture copy", {{encoded_, Access::copy_source},
-                                               {scratch_, Access::copy_source},
-                                               {atlas[0], Access::copy_target},
-                                               {atlas[1], Access::copy_target},
-                                               {atlas[2], Access::copy_target}});
-    const int first_mip = first_encoded_mip(format_);
+    std::vector<gpu::Use> uses = {{encoded_, Access::copy_source}, {scratch_, Access::copy_source}};
+    for (gpu::Image& image : atlas) uses.emplace_back(image, Access::copy_target);
+    auto pass = commands.pass("texture copy", uses);
+    const int first_mip = textures_.first_encoded_mip;
     std::vector<VkBufferImageCopy> encoded;
     std::vector<VkImageCopy> copied;
-    for (uint32_t which = 0; which < 3; ++which) {
+    for (uint32_t which = 0; which < uint32_t(textures_.count); ++which) {
         encoded.clear();
         copied.clear();
         for (const Placed& placed : batch) {
@@ -373,13 +343,13 @@ void Composer::cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, 
             uint64_t unit = placed.rect.first_unit + uint64_t(which) * placed.rect.units;
             for (int mip = first_mip; mip < 2; ++mip) {
                 encoded.push_back(
-                    {.bufferOffset = unit * uint64_t(unit_bytes(format_)),
+                    {.bufferOffset = unit * uint64_t(textures_.unit_bytes),
                      .bufferRowLength = 0,
                      .bufferImageHeight = 0,
                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, uint32_t(mip), 0, 1},
                      .imageOffset = {corner.x >> mip, corner.y >> mip, 0},
                      .imageExtent = {uint32_t(rect.width()) >> mip, uint32_t(rect.height()) >> mip, 1}});
-                const glm::ivec2 size = encoded_size(rect, mip, format_);
+                const glm::ivec2 size = encoded_size(rect, mip, textures_);
                 unit += uint64_t(size.x) * uint64_t(size.y);
             }
             const glm::ivec2 from = placed.rect.scratch_min;

@@ -29,22 +29,21 @@ struct ComposeJob {
     int index_slot = 0;
 };
 
-using PageAtlas = std::array<gpu::Image, 3>;
-[[nodiscard]] Result<PageAtlas> make_page_atlas(gpu::Device& device, PageFormat format, uint32_t pages_x,
-                                                uint32_t pages_y);
-
 class Composer {
   public:
     static Result<std::unique_ptr<Composer>> create(gpu::Device& device, const Document& document,
                                                     IndexMap& index, LayerSet& layers,
-                                                    const TextureLayout& layout, PageFormat format,
+                                                    const TextureLayout& layout, const PageTextures& textures,
                                                     bool decals);
     Status cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const ComposeJob> jobs,
                        PageAtlas& atlas);
 
-    // Of the channels of the three textures in the block compressor. Normals and gloss carry the picture;
-    // occlusion, metalness and feature bear more error. By eye on rock and grass.
-    static constexpr glm::vec4 kEncoderWeights[3] = {{1, 1, 1, 0}, {0.7f, 1, 0.4f, 0}, {0.5f, 1, 0.3f, 0}};
+    // Of the colour channels of a layout's textures in the block compressor. Normals and gloss carry the
+    // picture; occlusion, metalness and optional channels bear more error. By eye on rock and grass.
+    static constexpr glm::vec4 kRowWeights[kMaxPageTextures] = {
+        {1, 1, 1, 0}, {0.7f, 1, 0.4f, 0}, {0.5f, 1, 0.3f, 0}, {1, 1, 1, 0}};
+    static constexpr glm::vec4 kPairWeights[kMaxPageTextures] = {
+        {1, 1, 1, 0}, {0.4f, 1, 0.7f, 0}, {0, 0, 0, 0}, {0, 0, 0, 0}};
     [[nodiscard]] uint64_t gpu_bytes() const;
     // How a layer lies in a page; also of use to tests.
     static shared::LayerPlace layer_place(double origin_x_m, double origin_y_m, double side_m, double texel_m,
@@ -54,7 +53,7 @@ class Composer {
     struct Placed;  // a job with its place in scratch and in the buffers
     struct Work;
     Composer(const Document& document, IndexMap& index, LayerSet& layers, const TextureLayout& layout,
-             PageFormat format);
+             const PageTextures& textures);
     [[nodiscard]] Placed prepare(const ComposeJob& job, glm::ivec2 scratch_min);
     Status cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch,
                      PageAtlas& atlas);
@@ -69,8 +68,8 @@ class Composer {
     IndexMap& index_;
     LayerSet& layers_;
     TextureLayout layout_;
-    PageFormat format_;
-    gpu::Image scratch_;  // a layer a texture
+    PageTextures textures_;
+    gpu::Image scratch_;  // see shaders/texture/page_format.h
     gpu::Buffer encoded_;
     gpu::Sampler nearest_;
     gpu::Pipeline one_layer_, general_, encode_[2], crater_, footprint_;

@@ -38,7 +38,7 @@ VirtualTexture::~VirtualTexture() = default;
 Status VirtualTexture::Impl::make_resources() {
     Impl& t = *this;
     const uint32_t side = uint32_t(t.desc.pages_per_side);
-    LOAM_TRY(assign(t.atlas, make_page_atlas(t.device, t.desc.format, side, side)));
+    LOAM_TRY(assign(t.atlas, make_page_atlas(t.device, t.textures, side, side)));
     LOAM_TRY(assign(t.indirection, gpu::Image::create(t.device, {.name = "indirection",
                                                                  .format = VK_FORMAT_R32_UINT,
                                                                  .width = uint32_t(t.desc.indirection_size),
@@ -84,7 +84,7 @@ Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& devi
     if (!std::has_single_bit(uint32_t(desc.indirection_size)) || desc.indirection_size > kMaxIndirectionSize)
         return error("the indirection texture's side is a power of two up to {}, not {}", kMaxIndirectionSize,
                      desc.indirection_size);
-    if (desc.format == PageFormat::bc1x3 && !device.caps().bc) desc.format = PageFormat::rgba8;
+    if (is_compressed(desc.format) && !device.caps().bc) desc.format = PageFormat::rgba8;
     const TextureLayout layout = texture_layout(document.bounds());
     const int log2_size = std::countr_zero(uint32_t(desc.indirection_size));
     if (log2_size < layout.default_log2_width)
@@ -99,7 +99,8 @@ Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& devi
         SectorSetDesc{
             .layout = layout, .indirection_log2_size = log2_size, .max_live = desc.max_live_sectors});
     LOAM_TRY(texture->impl_->make_resources());
-    auto composer = Composer::create(device, document, index, layers, layout, desc.format, desc.decals);
+    auto composer =
+        Composer::create(device, document, index, layers, layout, texture->impl_->textures, desc.decals);
     if (!composer.ok()) return composer.error();
     texture->impl_->composer = std::move(*composer);
     return texture;
@@ -194,10 +195,8 @@ Status VirtualTexture::update(gpu::FrameRing& ring, gpu::Commands& commands, con
     if (view.announced_m) t.cmd_eye(commands, view, t.eye_state(Eye::announced), *view.announced_m);
     t.cmd_direct(commands, view);
     // From the first frame on everything can be sampled, also before anything was written.
-    commands.use({{t.atlas[0], Access::fragment_sampled},
-                  {t.atlas[1], Access::fragment_sampled},
-                  {t.atlas[2], Access::fragment_sampled},
-                  {t.indirection, Access::fragment_sampled}});
+    for (gpu::Image& image : t.atlas) commands.use({{image, Access::fragment_sampled}});
+    commands.use({{t.indirection, Access::fragment_sampled}});
 #ifndef NDEBUG
     const std::string fault = tree_fault();
     LOAM_CHECK(fault.empty(), fault);
@@ -252,7 +251,10 @@ Status VirtualTexture::record_feedback(gpu::FrameRing& ring, gpu::Commands& comm
 }
 
 gpu::Image& VirtualTexture::atlas(int which) {
-    return impl_->atlas[size_t(which)];
+    return impl_->atlas[std::min(size_t(which), impl_->atlas.size() - 1)];
+}
+const PageTextures& VirtualTexture::textures() const {
+    return impl_->textures;
 }
 gpu::Image& VirtualTexture::indirection() {
     return impl_->indirection;

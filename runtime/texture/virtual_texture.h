@@ -18,15 +18,11 @@
 #include "runtime/maps/index_map.h"
 #include "runtime/texture/feedback.h"
 #include "runtime/texture/layer_set.h"
+#include "runtime/texture/page_format.h"
 #include "runtime/texture/page_id.h"
 #include "runtime/texture/sector_set.h"
 
 namespace loam {
-
-enum class PageFormat {
-    bc1x3,
-    rgba8
-};  // three BC1 textures, or three RGBA8 (the uncompressed comparison, fast on software devices)
 
 inline constexpr uint32_t kUnusedIndirection = 0xfffffffeu;  // of expected_indirection
 
@@ -104,8 +100,10 @@ class VirtualTexture {
     Status record_feedback(gpu::FrameRing& ring, gpu::Commands& commands, const FeedbackSource& source);
 
     // --- for shaders that include shaders/texture/vt_sample.glsl (its head says which slots) ---
-    [[nodiscard]] gpu::Image& atlas(
-        int which);  // 0 albedo, 1 gloss+normal x+occlusion, 2 metalness+normal y+feature
+    // Physical texture 0 … 3, channels as in page_format.h; one that the format has not got: its last, as
+    // every slot of a shader is bound to something.
+    [[nodiscard]] gpu::Image& atlas(int which);
+    [[nodiscard]] const PageTextures& textures() const;
     [[nodiscard]] gpu::Image& indirection();  // R32_UINT
     [[nodiscard]] gpu::Buffer& sector_table();
     [[nodiscard]] gpu::Buffer& params();  // VtParams of this frame
@@ -147,7 +145,7 @@ class VirtualTexture {
     [[nodiscard]] Statistics statistics() const;
 
     // Tests: every resident page composed again from nothing into scratch and compared with what is in the
-    // atlas. Returns the number of pages that differ in any byte (all mips, all three textures).
+    // atlas. Returns the number of pages that differ in any byte (all mips, all textures).
     Result<uint32_t> count_stale_pages(gpu::FrameRing& ring);
     // Tests: what the CPU's quad trees say the indirection texture holds, row by row; places outside all
     // images are kUnusedIndirection.

@@ -38,12 +38,12 @@ uint64_t cmd_copy_page(gpu::Commands& commands, const gpu::Image& image, glm::iv
 
 Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
     Impl& t = *impl_;
-    auto made = make_page_atlas(t.device, t.desc.format, kPagesX, kPagesY);
+    auto made = make_page_atlas(t.device, t.textures, kPagesX, kPagesY);
     if (!made.ok()) return made.error();
     PageAtlas fresh = std::move(*made);
-    const VkFormat format = fresh[0].format();
-    const uint64_t page_bytes = 3 * (gpu::image_bytes(format, kPageTexels, kPageTexels) +
-                                     gpu::image_bytes(format, kPageTexels / 2, kPageTexels / 2));
+    const VkFormat format = t.textures.vk_format;
+    const uint64_t page_bytes = fresh.size() * (gpu::image_bytes(format, kPageTexels, kPageTexels) +
+                                                gpu::image_bytes(format, kPageTexels / 2, kPageTexels / 2));
     auto buffer = gpu::Buffer::create(
         t.device, {.name = "page comparison", .size_bytes = 2 * page_bytes * kPagesAtOnce});
     if (!buffer.ok()) return buffer.error();
@@ -73,20 +73,16 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
             }
             if (jobs.size() == count) {
                 LOAM_TRY(t.composer->cmd_compose(ring, commands, jobs, fresh));
-                commands.use({{fresh[0], Access::copy_source},
-                              {fresh[1], Access::copy_source},
-                              {fresh[2], Access::copy_source},
-                              {t.atlas[0], Access::copy_source},
-                              {t.atlas[1], Access::copy_source},
-                              {t.atlas[2], Access::copy_source},
-                              {*buffer, Access::copy_target}});
+                commands.use({{*buffer, Access::copy_target}});
+                for (PageAtlas* atlas : {&fresh, &t.atlas})
+                    for (gpu::Image& image : *atlas) commands.use({{image, Access::copy_source}});
                 uint64_t at = 0;
                 for (size_t i = 0; i < count; ++i)
                     for (const bool resident : {true, false}) {
                         const int place = places[first + i], side = t.desc.pages_per_side;
                         const glm::ivec2 page =
                             resident ? glm::ivec2(place % side, place / side) : jobs[i].target;
-                        for (size_t which = 0; which < 3; ++which)
+                        for (size_t which = 0; which < fresh.size(); ++which)
                             at += cmd_copy_page(commands, resident ? t.atlas[which] : fresh[which], page,
                                                 *buffer, at);
                     }

@@ -45,6 +45,7 @@ struct VirtualTexture::Impl {
           index(i),
           layers(l),
           desc(s),
+          textures(page_textures(s.format)),
           layout(t),
           pool(s.pages_per_side),
           sectors(sector_desc),
@@ -105,6 +106,7 @@ struct VirtualTexture::Impl {
     IndexMap& index;
     LayerSet& layers;
     VirtualTextureDesc desc;
+    PageTextures textures;
     TextureLayout layout;
     PagePool pool;
     SectorSet sectors;

@@ -17,6 +17,8 @@ void main() {
     vec2 offset;
     vt_split(queries[i].rel_m, sector, offset);
     VtSample s = vt_sample(sector, offset, queries[i].log2_texel, queries[i].log2_texel);
-    answers[i * 2] = vec4(s.material.albedo, s.material.gloss);
-    answers[i * 2 + 1] = vec4(s.material.normal, s.material.occlusion, float(s.shown_mip) + 100.0 * float(s.id));
+    answers[i * 4u] = vec4(s.material.albedo, s.material.gloss);
+    answers[i * 4u + 1u] = vec4(s.material.normal, s.material.occlusion, s.material.metalness);
+    answers[i * 4u + 2u] = s.material.channels;
+    answers[i * 4u + 3u] = vec4(float(s.shown_mip), float(s.id), 0.0, 0.0);
 }

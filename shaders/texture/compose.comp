@@ -1,5 +1,5 @@
 #version 460
-// Composes rectangles of pages into scratch, in the physical texture's channel layout: a workgroup a tile.
+// Composes rectangles of pages into scratch (page_format.h): a workgroup a tile.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/texture/compose_io.h"
@@ -15,7 +15,7 @@ layout(binding = 2) uniform sampler2DArray layer_metal;
 layout(binding = 3) uniform usampler2DArray index_pages;
 layout(binding = 4) uniform sampler2DArray tint_pages;
 layout(binding = 5, scalar) readonly buffer Places { LayerPlace places[]; };
-layout(binding = 6, rgba8) uniform writeonly image2DArray scratch; // a layer a texture
+layout(binding = 6, rgba8) uniform writeonly image2DArray scratch;
 layout(binding = 7, scalar) readonly buffer Rects { ComposeRect rects[]; };
 layout(binding = 8, scalar) readonly buffer Tiles { uint tiles[]; };
 layout(push_constant, scalar) uniform Push { ComposePush push; };

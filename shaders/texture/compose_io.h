@@ -2,6 +2,7 @@
 #ifndef LOAM_TEXTURE_COMPOSE_IO_H
 #define LOAM_TEXTURE_COMPOSE_IO_H
 #include "shaders/base/shared.h"
+#include "shaders/texture/page_format.h"
 LOAM_BEGIN_SHARED
 
 #define kScratchWidth 1024
@@ -33,7 +34,7 @@ struct ComposeRect {
     uint first_place;    // of the rectangle's layer places
     uint layer;          // of one-layer rectangles
     uint last_layer;     // larger indices in the map count as this one
-    uint first_unit;     // of its output: uvec2 (BC1) or uint (RGBA8), mip by mip, texture by texture
+    uint first_unit;     // of its output: blocks, or texels of RGBA8; mip by mip, texture by texture
     uint units;          // a texture
 };
 
@@ -52,7 +53,7 @@ struct ComposePush {
 
 struct EncodePush {
     uint tile_count;
-    vec4 weights[3];     // of each texture's channels in the block compressor
+    vec4 weights[kMaxPageTextures]; // of each texture's colour channels in the block compressor
 };
 
 LOAM_END_SHARED

@@ -1,22 +1,32 @@
-// What the two encoders share: a thread a unit (block or texel), a texture a workgroup's z, and a texel of mip kMip of a rectangle
-// in scratch; mip 1 is the mean of four texels.
+// What the two encoders share: a thread a unit (block or texel), a texture a workgroup's y, and a texel of mip kMip of a rectangle
+// of a page texture, its channels gathered from scratch (page_format.h); mip 1 is the mean of four texels.
+// Specialisation constants: 0: the mip, 30: the layout, kPageRows or kPagePairs.
+#include "shaders/texture/page_format.h"
 layout(constant_id = 0) const int kMip = 0;
+layout(constant_id = 30) const uint kPageLayout = kPageRows;
 layout(binding = 0) uniform sampler2DArray scratch;
 layout(binding = 2, scalar) readonly buffer Rects { ComposeRect rects[]; };
 layout(binding = 3, scalar) readonly buffer Tiles { uint tiles[]; };
 layout(push_constant, scalar) uniform Push { EncodePush push; };
 
 // Albedo is stored as a square root: its mip averages the square.
-vec3 read_texel(ivec2 scratch_min, ivec2 texel, int which) {
-    if (kMip == 0) return texelFetch(scratch, ivec3(scratch_min + texel, which), 0).rgb;
-    ivec3 at = ivec3(scratch_min + texel * 2, which);
+vec3 read_layer(ivec2 scratch_min, ivec2 texel, int layer) {
+    if (kMip == 0) return texelFetch(scratch, ivec3(scratch_min + texel, layer), 0).rgb;
+    ivec3 at = ivec3(scratch_min + texel * 2, layer);
     precise vec3 a = texelFetch(scratch, at, 0).rgb;
     precise vec3 b = texelFetch(scratch, at + ivec3(1, 0, 0), 0).rgb;
     precise vec3 c = texelFetch(scratch, at + ivec3(0, 1, 0), 0).rgb;
     precise vec3 d = texelFetch(scratch, at + ivec3(1, 1, 0), 0).rgb;
     precise vec3 mean = (a + b + c + d) * 0.25;
     precise vec3 mean_square = sqrt((a * a + b * b + c * c + d * d) * 0.25);
-    return which == 0 ? mean_square : mean;
+    return layer == 0 ? mean_square : mean;
+}
+
+vec4 read_texel(ivec2 scratch_min, ivec2 texel, int which) {
+    vec3 own = read_layer(scratch_min, texel, which);
+    if (kPageLayout == kPageRows) return vec4(own, 1.0);
+    vec3 metal = read_layer(scratch_min, texel, 2);
+    return which == 0 ? vec4(own, metal.r) : vec4(own.bgr, metal.g);
 }
 
 // Where a unit of a tile lies: units a texel square's side (2 or 1 blocks, 4 texels of mip 1 …) as a power of two.

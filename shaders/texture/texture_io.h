@@ -26,17 +26,12 @@
 // | 28–31 | log2 of the image's width in pages |
 // The outermost ring is always 0, so that a lookup may clamp instead of comparing.
 //
-// Physical page texture, channels of the three textures (the talk's layout):
-// | texture | R | G | B |
-// | --- | --- | --- | --- |
-// | 0 | albedo r | albedo g | albedo b | square root of the linear value: BC1 spends its bits well, decoding is one multiply
-// | 1 | gloss | normal x | occlusion |
-// | 2 | metalness | normal y | feature (0) |
-// Normal components are (130 + 125 n) / 255: zero is a value that BC1's six bits of green hold exactly.
-// Source: Call of Duty talk, "Indirection Texture Texel", "Feedback Buffer Value", "Physical Textures".
+// Channels of a physical page: page_format.h.
+// Source: Call of Duty talk, "Indirection Texture Texel", "Feedback Buffer Value".
 #ifndef LOAM_TEXTURE_IO_H
 #define LOAM_TEXTURE_IO_H
 #include "shaders/base/shared.h"
+#include "shaders/texture/page_format.h"
 LOAM_BEGIN_SHARED
 
 #define kPageTexels 256
@@ -95,9 +90,6 @@ struct DirectParams {
     uint last_layer;        // larger indices in the map count as this one
     ivec4 levels[kMaxIndexLevels]; // x: first entry in the page table, y: pages x, z: pages y, w: unused
 };
-
-LOAM_INLINE float page_encode_normal(float n) { return (130.0f + 125.0f * n) / 255.0f; }
-LOAM_INLINE float page_decode_normal(float v) { return v * (255.0f / 125.0f) - 130.0f / 125.0f; }
 
 LOAM_END_SHARED
 #endif

@@ -6,8 +6,8 @@
 // | +0 | VtParams, storage buffer | params() |
 // | +1 | sector table, storage buffer | sector_table() |
 // | +2 | indirection, usampler2D | indirection(), nearest_sampler() |
-// | +3 … +5 | physical textures, sampler2D | atlas(0 … 2), sampler() |
-// Specialisation constant 20: 1 samples both mips of the page and blends them (twice the fetches).
+// | +3 … +6 | physical textures, sampler2D | atlas(0 … 3), sampler() |
+// Specialisation constants 30, 31: the page's layout and channels (vt_fetch.glsl); 20: 1 samples both mips of the page and blends them (twice the fetches).
 // Source: Call of Duty talk, "Indirection Texture Texel".
 //
 //     ivec2 sector; vec2 offset;
