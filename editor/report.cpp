@@ -47,6 +47,10 @@ Json to_report(const ProjectSettings& s) {
             {"sun_azimuth_rad", s.sun_azimuth_rad},
             {"sun_elevation_rad", s.sun_elevation_rad},
             {"haze_per_km", s.haze_per_km},
+            {"ground",
+             {{"distortion_amplitude_m", s.ground.distortion_amplitude_m},
+              {"distortion_period_m", s.ground.distortion_period_m},
+              {"tile_hiding", s.ground.tile_hiding}}},
             {"layers", layers}};
 }
 

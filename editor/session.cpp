@@ -114,6 +114,11 @@ Result<Dirt> Session::apply(const Command& command) {
     return dirt;
 }
 
+Status Session::change_settings(const ProjectSettings& settings) {
+    LOAM_TRY(document_->change_settings(settings));
+    return renderer_ ? renderer_->settings_changed(*ring_) : Status();
+}
+
 Status Session::record_to(const std::filesystem::path& file) {
     auto recorder = std::make_unique<Recorder>();
     recorder->path = file;

@@ -70,6 +70,8 @@ class Session {
 
     // One door for edits: applies, tells the renderer, records.
     Result<Dirt> apply(const Command& command);
+    // Settings that may change (sun, ground, layers): the document's, and what is rendered from now on.
+    Status change_settings(const ProjectSettings& settings);
     // Every command from now on is appended to this file, one JSON line each.
     Status record_to(const std::filesystem::path& file);
 

@@ -29,6 +29,7 @@ struct Verb {
 [[nodiscard]] Verb replay_verb();
 [[nodiscard]] Verb render_verb();
 [[nodiscard]] Verb info_verb();
+[[nodiscard]] Verb set_verb();
 [[nodiscard]] Verb verify_verb();
 [[nodiscard]] Verb bench_verb();
 

@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include "editor/choices.h"
+#include "editor/settings_text.h"
 
 namespace loam::python {
 
@@ -226,9 +227,21 @@ void bind_edits(py::class_<Project>& c) {
     c.def("redo", [](Project& p) { return p.apply_json({{"cmd", "redo"}}); });
     c.def_property_readonly("can_undo", [](Project& p) { return p.session().document().can_undo(); });
     c.def_property_readonly("can_redo", [](Project& p) { return p.session().document().can_redo(); });
+    c.def("set", &set, "Changes a setting, as `loam set` names them.", py::arg("name"), py::arg("value"));
     c.def(
         "record_to", [](Project& p, const std::string& file) { unwrap(p.session().record_to(file)); },
         "Appends every command from now on to a script.", py::arg("file"));
+}
+
+void set(Project& p, const std::string& name, const py::object& value) {
+    std::string text;
+    if (py::isinstance<py::bool_>(value))
+        text = value.cast<bool>() ? "true" : "false";
+    else
+        text = py::str(value);
+    ProjectSettings settings = p.session().document().settings();
+    unwrap(set_by_name(settings, name, text));
+    unwrap(p.session().change_settings(settings));
 }
 
 void bind_queries(py::class_<Project>& c) {

@@ -149,6 +149,7 @@ void build_properties(App& app, ui::Ui& ui) {
     const std::string title = fmt::format("{}##tool", tool_title(app.tools.tool));
     if (auto section = ui::section(ui, title)) tool_properties(app, ui);
     if (auto section = ui::section(ui, "Layers")) layer_palette(app, ui);
+    if (auto section = ui::section(ui, "Ground")) ground_properties(app, ui);
     if (auto section = ui::section(ui, "Sun")) sun_properties(app, ui);
     if (auto section = ui::section(ui, "History")) history_list(app, ui);
 }

@@ -158,9 +158,14 @@ Status Renderer::Impl::create_texture(gpu::FrameRing& ring) {
 }
 
 Status Renderer::settings_changed(gpu::FrameRing& ring) {
-    impl_->changed = true;
-    if (impl_->layers->names.size() == impl_->document.settings().layers.size()) return {};
-    return impl_->create_texture(ring);
+    Impl& r = *impl_;
+    r.changed = true;
+    const ProjectSettings& settings = r.document.settings();
+    if (r.layers->names.size() != settings.layers.size()) return r.create_texture(ring);
+    if (r.layers->ground == settings.ground) return {};
+    LOAM_TRY(r.layers->take_ground(ring, settings.ground));
+    r.resolve->take_ground();
+    return r.texture->take_ground();
 }
 
 shared::FrameUniforms Renderer::Impl::uniforms(const Camera& camera, glm::uvec2 size,
@@ -443,7 +448,7 @@ FrameStatistics Renderer::statistics() const {
                 {"index pages (GPU)", r.indices->gpu_bytes()},
                 {"virtual texture", s.texture.gpu_bytes},
                 {"layers", r.layers->albedo_reveal.bytes() + r.layers->normal_gloss_occlusion.bytes() +
-                               r.layers->metalness.bytes()},
+                               r.layers->metalness.bytes() + r.layers->distortion.bytes()},
                 {"shadow atlas", r.shadows->atlas().bytes()},
                 {"frame targets", r.targets.bytes()}};
     return s;

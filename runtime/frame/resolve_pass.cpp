@@ -19,7 +19,8 @@ void use_material(gpu::Commands& commands, const ResolveInputs& in, bool direct)
                       {in.texture.direct_places(), Access::fragment_sampled},
                       {in.layers.albedo_reveal, Access::fragment_sampled},
                       {in.layers.normal_gloss_occlusion, Access::fragment_sampled},
-                      {in.layers.metalness, Access::fragment_sampled}});
+                      {in.layers.metalness, Access::fragment_sampled},
+                      {in.layers.distortion_map(), Access::fragment_sampled}});
     else
         commands.use({{in.texture.params(), Access::fragment_sampled},
                       {in.texture.sector_table(), Access::fragment_sampled},
@@ -51,7 +52,8 @@ std::vector<gpu::Bound> direct_material(const ResolveInputs& in) {
             {s + 5, in.layers.albedo_reveal.view(), in.layers.sampler},
             {s + 6, in.layers.normal_gloss_occlusion.view(), in.layers.sampler},
             {s + 7, in.layers.metalness.view(), in.layers.sampler},
-            {s + 8, *in.decals.buffer, in.decals.offset, in.decals.size_bytes}};
+            {s + 8, *in.decals.buffer, in.decals.offset, in.decals.size_bytes},
+            {s + 9, in.layers.distortion_map().view(), in.layers.sampler}};
 }
 
 std::vector<gpu::Bound> floor_material(const ResolveInputs& in) {
@@ -109,7 +111,7 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
                                    : "frame/resolve.frag",
         .push_bytes = sizeof(shared::ResolvePush),
         // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal, 22: decals, 25:
-        // texels, 30, 31: the page's layout and channels.
+        // texels, 30, 31: the page's layout and channels, 40: tile hiding, 41: distortion.
         .constants = {{0, kind == Kind::fast || kind == Kind::floor ? 0u : 1u},
                       {1, kind == Kind::debug ? 1u : 0u},
                       {20, kind == Kind::fast ? 0u : 1u},
@@ -117,7 +119,9 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
                       {22, kind == Kind::direct_decals || kind == Kind::texels_decals ? 1u : 0u},
                       {25, texels ? 1u : 0u},
                       {30, textures.layout},
-                      {31, textures.placement}},
+                      {31, textures.placement},
+                      {40, layers.ground.tile_hiding},
+                      {41, layers.ground.distortion_amplitude_m > 0}},
         .color_formats = {kPictureFormat},
         .depth_format = device_->caps().depth_stencil,
         .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
@@ -128,11 +132,19 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
     for (uint32_t i = 0; i < buffers + images; ++i)
         d.bindings.push_back(i < buffers ? gpu::storage_buffer(kMaterialSlot + i)
                                          : gpu::sampled_image(kMaterialSlot + i));
-    if (direct) d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images));
+    if (direct) {
+        d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images));
+        d.bindings.push_back(gpu::sampled_image(kMaterialSlot + buffers + images + 1));
+    }
     auto made = gpu::Pipeline::create(*device_, d);
     if (!made) return made.error();
     pipeline = std::move(*made);
     return &pipeline;
+}
+
+void ResolvePass::take_ground() {
+    for (const Kind kind : {Kind::direct, Kind::direct_decals, Kind::texels, Kind::texels_decals})
+        pipelines_[size_t(kind)] = {};
 }
 
 Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,

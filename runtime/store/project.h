@@ -24,6 +24,15 @@ struct LayerRoles {
     std::string broken = "scree";   // crater rims and ejecta
 };
 
+// How the ground's layers are laid over the whole map; each is off by default and then costs nothing.
+struct GroundSettings {
+    // Distortion: the lookup of the index map moves by up to so much, at most one index texel, in waves that repeat after a period.
+    double distortion_amplitude_m = 0;
+    double distortion_period_m = 32;
+    bool tile_hiding = false;  // textures turned by sections of four index texels
+    bool operator==(const GroundSettings&) const = default;
+};
+
 struct ProjectSettings {
     std::string name = "untitled";
     // Height base map: samples (i, j) at world (i, j) * height_spacing_m, 0 <= i < height_samples_x.
@@ -35,6 +44,7 @@ struct ProjectSettings {
     uint16_t default_layer = 0;     // index of pages never written
     std::vector<LayerEntry> layers;
     LayerRoles roles;
+    GroundSettings ground;
     double sun_azimuth_rad = 3.9;  // clockwise from north, where the sun stands
     double sun_elevation_rad = 0.6;
     double haze_per_km = 0.045;  // extinction at sea level, 1/km

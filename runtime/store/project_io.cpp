@@ -80,6 +80,11 @@ double number_of(const toml::node& node, const char* name, double low, double hi
     return value;
 }
 
+bool flag_of(const toml::node& node, const char* name) {
+    if (const auto* flag = node.as_boolean()) return flag->get();
+    refuse(node, "{} must be true or false", name);
+}
+
 int64_t whole_of(const toml::node& node, const char* name, int64_t low, int64_t high) {
     const auto* whole = node.as_integer();
     if (!whole) refuse(node, "{} must be a whole number", name);
@@ -153,6 +158,19 @@ ProjectSettings settings_of(const toml::table& root) {
                    {{"scorched", [&](const toml::node& n) { s.roles.scorched = string_of(n, "scorched"); }},
                     {"broken", [&](const toml::node& n) { s.roles.broken = string_of(n, "broken"); }}});
     };
+    const auto read_ground = [&](const toml::node& node) {
+        GroundSettings& g = s.ground;
+        read_table(table_of(node, "ground"), "[ground]",
+                   {{"distortion_amplitude_m",
+                     [&](const toml::node& n) {
+                         g.distortion_amplitude_m = number_of(n, "distortion_amplitude_m", 0, 64);
+                     }},
+                    {"distortion_period_m",
+                     [&](const toml::node& n) {
+                         g.distortion_period_m = number_of(n, "distortion_period_m", 1, 4096);
+                     }},
+                    {"tile_hiding", [&](const toml::node& n) { g.tile_hiding = flag_of(n, "tile_hiding"); }}});
+    };
     const auto read_layers = [&](const toml::node& node) {
         const auto* layers = node.as_array();
         if (!layers) refuse(node, "layer must be a list of tables: [[layer]]");
@@ -164,6 +182,7 @@ ProjectSettings settings_of(const toml::table& root) {
                 {"sun", read_sun},
                 {"air", read_air},
                 {"roles", read_roles},
+                {"ground", read_ground},
                 {"layer", read_layers}});
     if (!has_samples) refuse(root, "height_samples is missing in [terrain]");
     if (!has_refine) s.refine = default_refine(s.height_spacing_m);
@@ -201,6 +220,10 @@ std::string text_of(const ProjectSettings& s) {
     out += fmt::format("\n[air]\nhaze_per_km = {}\n", toml_real(s.haze_per_km));
     out += fmt::format("\n[roles]\nscorched = {}\nbroken = {}\n", toml_text(s.roles.scorched),
                        toml_text(s.roles.broken));
+    out += fmt::format("\n[ground]\ndistortion_amplitude_m = {} # at most index_spacing_m; 0: off\n",
+                       toml_real(s.ground.distortion_amplitude_m));
+    out += fmt::format("distortion_period_m = {}\ntile_hiding = {}\n", toml_real(s.ground.distortion_period_m),
+                       s.ground.tile_hiding);
     for (const LayerEntry& layer : s.layers)
         out += fmt::format("\n[[layer]]\nname = {}\nfile = {}\ntile_m = {}\n", toml_text(layer.name),
                            toml_text(layer.file), toml_real(layer.tile_m));

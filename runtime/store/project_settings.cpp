@@ -37,6 +37,16 @@ Status check_layer(const LayerEntry& layer, std::set<std::string>& names) {
     return {};
 }
 
+Status check_ground(const ProjectSettings& settings) {
+    const GroundSettings& ground = settings.ground;
+    // An index page's border holds what a lookup reaches that moves by one texel, and no more.
+    if (const Status status = check_number("distortion_amplitude_m", ground.distortion_amplitude_m, 0,
+                                           settings.index_spacing_m);
+        !status.ok())
+        return error("{} (index_spacing_m): a lookup moves by one index texel at most", status.message());
+    return check_number("distortion_period_m", ground.distortion_period_m, 1, 4096);
+}
+
 }  // namespace
 
 int default_refine(double height_spacing_m) {
@@ -67,6 +77,7 @@ Status check_settings(const ProjectSettings& settings) {
                      settings.layers.size());
     std::set<std::string> names;
     for (const LayerEntry& layer : settings.layers) LOAM_TRY(check_layer(layer, names));
+    LOAM_TRY(check_ground(settings));
     LOAM_TRY(check_number("azimuth_rad", settings.sun_azimuth_rad, -100, 100));
     LOAM_TRY(check_number("elevation_rad", settings.sun_elevation_rad, -1.5708, 1.5708));
     LOAM_TRY(check_number("haze_per_km", settings.haze_per_km, 0, 100));

@@ -6,6 +6,8 @@
 
 #include "runtime/base/check.h"
 #include "runtime/document/document.h"
+#include "runtime/texture/distortion.h"
+#include "shaders/texture/tile_hiding.h"
 
 namespace loam {
 
@@ -31,6 +33,12 @@ uint32_t encoded_units(const TexelRect& rect, const PageTextures& textures) {
     return units;
 }
 
+// Of a place in something that repeats every period_m: 0 … 1.
+float phase(double at_m, double period_m) {
+    const double repeats = at_m / period_m;
+    return float(repeats - std::floor(repeats));
+}
+
 }  // namespace
 
 struct Composer::Placed {
@@ -45,15 +53,20 @@ struct Composer::Work {
     uint32_t tile_count = 0, one_layer_tiles = 0;
 };
 
-Composer::Composer(const Document& document, IndexMap& index, LayerSet& layers, const TextureLayout& layout,
-                   const PageTextures& textures)
-    : document_(document), index_(index), layers_(layers), layout_(layout), textures_(textures) {}
+Composer::Composer(gpu::Device& device, const Document& document, IndexMap& index, LayerSet& layers,
+                   const TextureLayout& layout, const PageTextures& textures)
+    : device_(device),
+      document_(document),
+      index_(index),
+      layers_(layers),
+      layout_(layout),
+      textures_(textures) {}
 
 Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Document& document,
                                                    IndexMap& index, LayerSet& layers,
                                                    const TextureLayout& layout, const PageTextures& textures,
                                                    bool decals) {
-    std::unique_ptr<Composer> composer(new Composer(document, index, layers, layout, textures));
+    std::unique_ptr<Composer> composer(new Composer(device, document, index, layers, layout, textures));
     auto scratch =
         gpu::Image::create(device, {.name = "page scratch",
                                     .format = VK_FORMAT_R8G8B8A8_UNORM,
@@ -75,23 +88,7 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     if (!nearest.ok()) return nearest.error();
     composer->nearest_ = std::move(*nearest);
 
-    const auto compose = [&](uint32_t one_layer) {
-        return gpu::Pipeline::create(
-            device, gpu::ComputeDesc{
-                        .name = one_layer ? "compose, one layer" : "compose",
-                        .shader = "texture/compose.comp",
-                        .bindings = {gpu::sampled_image(0), gpu::sampled_image(1), gpu::sampled_image(2),
-                                     gpu::sampled_image(3), gpu::sampled_image(4), gpu::storage_buffer(5),
-                                     gpu::storage_image(6), gpu::storage_buffer(7), gpu::storage_buffer(8)},
-                        .push_bytes = sizeof(shared::ComposePush),
-                        .constants = {{0, one_layer}, {1, layers.has_metal ? 1u : 0u}}});
-    };
-    auto one = compose(1);
-    if (!one.ok()) return one.error();
-    composer->one_layer_ = std::move(*one);
-    auto general = compose(0);
-    if (!general.ok()) return general.error();
-    composer->general_ = std::move(*general);
+    LOAM_TRY(composer->take_ground());
     for (int mip = textures.first_encoded_mip; mip < 2; ++mip) {
         const bool blocks = is_compressed(textures.format);
         auto encode = gpu::Pipeline::create(
@@ -130,13 +127,38 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     return composer;
 }
 
+Result<gpu::Pipeline> Composer::material_pipeline(bool one_layer) const {
+    return gpu::Pipeline::create(
+        device_, gpu::ComputeDesc{
+                     .name = one_layer ? "compose, one layer" : "compose",
+                     .shader = "texture/compose.comp",
+                     .bindings = {gpu::sampled_image(0), gpu::sampled_image(1), gpu::sampled_image(2),
+                                  gpu::sampled_image(3), gpu::sampled_image(4), gpu::storage_buffer(5),
+                                  gpu::storage_image(6), gpu::storage_buffer(7), gpu::storage_buffer(8),
+                                  gpu::sampled_image(9)},
+                     .push_bytes = sizeof(shared::ComposePush),
+                     .constants = {{0, one_layer},
+                                   {1, layers_.has_metal},
+                                   {2, layers_.ground.tile_hiding},
+                                   {3, bool(layers_.distortion)}}});
+}
+
+Status Composer::take_ground() {
+    const std::array<bool, 2> features{layers_.ground.tile_hiding, bool(layers_.distortion)};
+    if (general_ && features == features_) return {};
+    auto one = material_pipeline(true);
+    if (!one.ok()) return one.error();
+    auto general = material_pipeline(false);
+    if (!general.ok()) return general.error();
+    one_layer_ = std::move(*one);
+    general_ = std::move(*general);
+    features_ = features;
+    return {};
+}
+
 shared::LayerPlace Composer::layer_place(double origin_x_m, double origin_y_m, double side_m, double texel_m,
                                          double tile_m, int layer_texels) {
-    const auto phase = [&](double at_m) {
-        const double repeats = at_m / tile_m;
-        return float(repeats - std::floor(repeats));
-    };
-    return {{phase(origin_x_m), phase(origin_y_m)},
+    return {{phase(origin_x_m, tile_m), phase(origin_y_m, tile_m)},
             float(side_m / tile_m),
             float(std::log2(texel_m * layer_texels / tile_m))};
 }
@@ -156,32 +178,48 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
                    .index_origin = glm::vec2(origin),
                    .index_scale = float(scale),
                    .index_slot = uint32_t(job.index_slot),
+                   .index_vertex = glm::ivec2(job.index_page.x, job.index_page.y) * kIndexPayload - kIndexBorder,
+                   .index_level = job.index_page.level,
                    .first_place = 0,
                    .layer = 0,
                    .last_layer = uint32_t(layers_.count - 1),
                    .first_unit = 0,
                    .units = encoded_units(job.rect, textures_)};
 
+    const GroundSettings& ground = layers_.ground;
+    const double reach = ground.distortion_amplitude_m / spacing_m;
+    if (reach > 0) {
+        const double period_m = ground.distortion_period_m, side_m = layout_.page_side_m(job.page);
+        placed.rect.distortion_origin = {phase(square.min_x, period_m), phase(square.min_y, period_m)};
+        placed.rect.distortion_scale = float(side_m / period_m);
+        placed.rect.distortion_reach = float(reach);
+        placed.rect.distortion_lod =
+            float(std::log2(layout_.texel_m(job.page) * kDistortionTexels / period_m));
+    }
+
     // One texel more on each side than the filter reads: the shader's floats may fall to the other side of a
     // texel's edge.
     const auto first = [&](int texel, double from) {
-        return std::clamp(int(std::floor(from + (texel - 3.5) / kPagePayload * scale)) - 1, 0,
+        return std::clamp(int(std::floor(from + (texel - 3.5) / kPagePayload * scale - reach)) - 1, 0,
                           kIndexTexels - 1);
     };
     const auto last = [&](int texel, double from) {
-        return std::clamp(int(std::floor(from + (texel - 4.5) / kPagePayload * scale)) + 3, 1, kIndexTexels);
+        return std::clamp(int(std::floor(from + (texel - 4.5) / kPagePayload * scale + reach)) + 3, 1,
+                          kIndexTexels);
     };
     const TexelRect seen{first(job.rect.x0, origin.x), first(job.rect.y0, origin.y),
                          last(job.rect.x1, origin.x), last(job.rect.y1, origin.y)};
     const IndexTexel* texels = index_.resident_page(job.index_page);
     LOAM_CHECK(texels, "a page is composed from a resident index page only");
     const auto layer_at = [&](int x, int y) {
-        return std::min<int>(texels[size_t(y * kIndexTexels + x)].layer, layers_.count - 1);
+        const uint32_t layer = std::min<uint32_t>(texels[size_t(y * kIndexTexels + x)].layer, placed.rect.last_layer);
+        const glm::ivec2 vertex = placed.rect.index_vertex + glm::ivec2(x, y);
+        return ground.tile_hiding ? shared::tile_key(layer, vertex.x, vertex.y, placed.rect.index_level) : layer;
     };
-    placed.rect.layer = uint32_t(layer_at(seen.x0, seen.y0));
+    placed.rect.layer = layer_at(seen.x0, seen.y0);
     placed.one_layer = true;
     for (int y = seen.y0; y < seen.y1 && placed.one_layer; ++y)
-        for (int x = seen.x0; x < seen.x1; ++x) placed.one_layer &= layer_at(x, y) == int(placed.rect.layer);
+        for (int x = seen.x0; x < seen.x1; ++x) placed.one_layer &= layer_at(x, y) == placed.rect.layer;
     return placed;
 }
 
@@ -266,7 +304,8 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
                                                   {layers_.normal_gloss_occlusion, Access::compute_sampled},
                                                   {layers_.metalness, Access::compute_sampled},
                                                   {index_.indices(), Access::compute_sampled},
-                                                  {index_.tints(), Access::compute_sampled}});
+                                                  {index_.tints(), Access::compute_sampled},
+                                                  {layers_.distortion_map(), Access::compute_sampled}});
     for (const bool one_layer : {true, false}) {
         const uint32_t tiles = one_layer ? work.one_layer_tiles : work.tile_count - work.one_layer_tiles;
         if (tiles == 0) continue;
@@ -279,7 +318,8 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
                                  {5, *places.buffer, places.offset, places.size_bytes},
                                  {6, scratch_.mip_view(0)},
                                  {7, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
-                                 {8, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes}});
+                                 {8, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes},
+                                 {9, layers_.distortion_map().view(), layers_.sampler}});
         commands.push(pipeline, shared::ComposePush{one_layer ? 0 : work.one_layer_tiles});
         commands.dispatch(tiles);
     }

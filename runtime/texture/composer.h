@@ -35,6 +35,8 @@ class Composer {
                                                     IndexMap& index, LayerSet& layers,
                                                     const TextureLayout& layout, const PageTextures& textures,
                                                     bool decals);
+    // After LayerSet::take_ground: the pipelines for what is on now.
+    Status take_ground();
     Status cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const ComposeJob> jobs,
                        PageAtlas& atlas);
 
@@ -52,8 +54,9 @@ class Composer {
   private:
     struct Placed;  // a job with its place in scratch and in the buffers
     struct Work;
-    Composer(const Document& document, IndexMap& index, LayerSet& layers, const TextureLayout& layout,
-             const PageTextures& textures);
+    Composer(gpu::Device& device, const Document& document, IndexMap& index, LayerSet& layers,
+             const TextureLayout& layout, const PageTextures& textures);
+    [[nodiscard]] Result<gpu::Pipeline> material_pipeline(bool one_layer) const;
     [[nodiscard]] Placed prepare(const ComposeJob& job, glm::ivec2 scratch_min);
     Status cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch,
                      PageAtlas& atlas);
@@ -64,6 +67,7 @@ class Composer {
     void cmd_encode(gpu::Commands& commands, const Work& work);
     void cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas);
 
+    gpu::Device& device_;
     const Document& document_;
     IndexMap& index_;
     LayerSet& layers_;
@@ -74,6 +78,7 @@ class Composer {
     gpu::Sampler nearest_;
     gpu::Pipeline one_layer_, general_, encode_[2], crater_, footprint_;
     bool decals_ = false;
+    std::array<bool, 2> features_{};  // tile hiding, distortion: of the pipelines
 };
 
 }  // namespace loam

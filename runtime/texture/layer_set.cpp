@@ -13,6 +13,7 @@
 #include "runtime/base/job_queue.h"
 #include "runtime/document/document.h"
 #include "runtime/store/layer_file.h"
+#include "runtime/texture/distortion.h"
 #include "shaders/texture/compose_io.h"
 
 namespace loam {
@@ -238,7 +239,45 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
     const VkBufferCopy region{params_offset, 0, params_bytes};
     vkCmdCopyBuffer(commands.handle(), staging->handle(), set->parameters.handle(), 1, &region);
     if (auto done = ring.finish(**frame); !done.ok()) return done.error();
+    LOAM_TRY(set->take_ground(ring, document.settings().ground));
     return set;
+}
+
+Status LayerSet::take_ground(gpu::FrameRing& ring, const GroundSettings& settings) {
+    ground = settings;
+    const bool wanted = settings.distortion_amplitude_m > 0;
+    if (!wanted) distortion = {};
+    if (!wanted || distortion) return {};
+    const auto mips = make_distortion();
+    auto image = gpu::Image::create(ring.device(),
+                                    {.name = "distortion",
+                                     .format = VK_FORMAT_R16G16_SFLOAT,
+                                     .width = kDistortionTexels,
+                                     .height = kDistortionTexels,
+                                     .mip_count = uint32_t(mips.size()),
+                                     .array_view = true,
+                                     .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+    if (!image.ok()) return image.error();
+    distortion = std::move(*image);
+    auto frame = ring.begin();
+    if (!frame.ok()) return frame.error();
+    gpu::Commands& commands = (*frame)->commands;
+    commands.use({{distortion, gpu::Access::copy_target}});
+    for (uint32_t mip = 0; mip < mips.size(); ++mip) {
+        const uint64_t bytes = mips[mip].size() * sizeof(mips[mip][0]);
+        const gpu::UploadSlice slice = ring.upload(bytes);
+        std::memcpy(slice.data, mips[mip].data(), bytes);
+        const uint32_t side = kDistortionTexels >> mip;
+        const VkBufferImageCopy region{.bufferOffset = slice.offset,
+                                       .bufferRowLength = 0,
+                                       .bufferImageHeight = 0,
+                                       .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, 1},
+                                       .imageOffset = {},
+                                       .imageExtent = {side, side, 1}};
+        vkCmdCopyBufferToImage(commands.handle(), slice.buffer->handle(), distortion.handle(),
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &region);
+    }
+    return ring.finish(**frame);
 }
 
 }  // namespace loam

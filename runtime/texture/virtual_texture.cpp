@@ -7,6 +7,7 @@
 
 #include "runtime/base/check.h"
 #include "runtime/document/document.h"
+#include "runtime/texture/distortion.h"
 #include "runtime/texture/virtual_texture_impl.h"
 
 namespace loam {
@@ -170,6 +171,17 @@ void VirtualTexture::Impl::cmd_direct(gpu::Commands& commands, const TextureView
     d.texels_per_sector = int(std::lround(kSectorSize_m / map.spacing_m(0)));
     d.level_count = std::min(map.desc().level_count, kMaxIndexLevels);
     d.last_layer = uint32_t(layers.count - 1);
+    const GroundSettings& ground = layers.ground;
+    if (ground.distortion_amplitude_m > 0) {
+        const auto phase = [&](int sector) {
+            const double repeats = sector * kSectorSize_m / ground.distortion_period_m;
+            return float(repeats - std::floor(repeats));
+        };
+        d.distortion_origin = {phase(camera.sector.x), phase(camera.sector.y)};
+        d.distortion_scale = float(1 / ground.distortion_period_m);
+        d.distortion_reach = float(ground.distortion_amplitude_m / map.spacing_m(0));
+        d.distortion_lod_bias = float(std::log2(kDistortionTexels / ground.distortion_period_m));
+    }
     for (int level = 0; level < d.level_count; ++level)
         d.levels[level] = {int(map.level_offset(level)), map.pages_x(level), map.pages_y(level), 0};
     std::vector<shared::LayerPlace> places;
@@ -181,6 +193,14 @@ void VirtualTexture::Impl::cmd_direct(gpu::Commands& commands, const TextureView
     vkCmdUpdateBuffer(commands.handle(), direct_params.handle(), 0, sizeof d, &d);
     vkCmdUpdateBuffer(commands.handle(), direct_places.handle(), 0, places.size() * sizeof places[0],
                       places.data());
+}
+
+Status VirtualTexture::take_ground() {
+    LOAM_TRY(impl_->composer->take_ground());
+    constexpr double kEverywhere_m = 1.0e6;
+    const WorldRect everywhere{-kEverywhere_m, -kEverywhere_m, kEverywhere_m, kEverywhere_m};
+    on_dirt({&everywhere, 1});
+    return {};
 }
 
 Status VirtualTexture::update(gpu::FrameRing& ring, gpu::Commands& commands, const TextureView& view) {

@@ -423,9 +423,11 @@ void VirtualTexture::on_dirt(std::span<const WorldRect> rects) {
 }
 
 void VirtualTexture::on_index_dirt(std::span<const WorldRect> rects) {
+    // The filter's reach, and distortion's.
+    const double reach_m = impl_->index.map().spacing_m(0) + impl_->layers.ground.distortion_amplitude_m;
     std::vector<WorldRect> grown;
     for (const WorldRect& rect : rects)
-        if (!rect.empty()) grown.push_back(rect.grown(impl_->index.map().spacing_m(0)));
+        if (!rect.empty()) grown.push_back(rect.grown(reach_m));
     on_dirt(grown);
 }
 

@@ -8,6 +8,8 @@
 layout(local_size_x = kTileTexels, local_size_y = kTileTexels) in;
 layout(constant_id = 0) const bool kOneLayer = false;
 layout(constant_id = 1) const bool kHasMetal = false;
+layout(constant_id = 2) const bool kTileHiding = false;
+layout(constant_id = 3) const bool kDistortion = false;
 
 layout(binding = 0) uniform sampler2DArray layer_albedo;
 layout(binding = 1) uniform sampler2DArray layer_normal;
@@ -18,6 +20,7 @@ layout(binding = 5, scalar) readonly buffer Places { LayerPlace places[]; };
 layout(binding = 6, rgba8) uniform writeonly image2DArray scratch;
 layout(binding = 7, scalar) readonly buffer Rects { ComposeRect rects[]; };
 layout(binding = 8, scalar) readonly buffer Tiles { uint tiles[]; };
+layout(binding = 9) uniform sampler2DArray distortion_map;
 layout(push_constant, scalar) uniform Push { ComposePush push; };
 
 ComposeRect rect;
@@ -25,6 +28,7 @@ ComposeRect rect;
 #define MATERIAL_ALBEDO layer_albedo
 #define MATERIAL_NORMAL layer_normal
 #define MATERIAL_METAL layer_metal
+#define MATERIAL_DISTORTION distortion_map
 #define MATERIAL_PLACE(layer) places[rect.first_place + (layer)]
 #include "shaders/texture/material.glsl"
 
@@ -36,23 +40,37 @@ void main() {
     ivec2 texel = rect.rect_min + at;
     precise vec2 position = (vec2(texel) - (float(kPageBorder) - 0.5)) * (1.0 / float(kPagePayload));
     precise vec2 index_at = rect.index_origin + position * rect.index_scale;
+    precise vec2 place = index_at;
+    if (kDistortion) {
+        precise vec2 from = rect.distortion_origin + position * rect.distortion_scale;
+        precise vec2 moved = index_at + distortion_at(from, rect.distortion_lod) * rect.distortion_reach;
+        index_at = moved;
+    }
     vec2 corner = floor(index_at);
     precise vec2 fraction = index_at - corner;
     ivec3 base = ivec3(ivec2(corner), int(rect.index_slot));
 
-    uvec4 layers = uvec4(rect.layer);
+    MaterialCorners c;
+    c.layers = uvec4(rect.layer);
     if (!kOneLayer) {
-        layers.x = texelFetch(index_pages, base, 0).r;
-        layers.y = texelFetch(index_pages, base + ivec3(1, 0, 0), 0).r;
-        layers.z = texelFetch(index_pages, base + ivec3(0, 1, 0), 0).r;
-        layers.w = texelFetch(index_pages, base + ivec3(1, 1, 0), 0).r;
-        layers = min(layers, uvec4(rect.last_layer));
+        c.layers.x = texelFetch(index_pages, base, 0).r;
+        c.layers.y = texelFetch(index_pages, base + ivec3(1, 0, 0), 0).r;
+        c.layers.z = texelFetch(index_pages, base + ivec3(0, 1, 0), 0).r;
+        c.layers.w = texelFetch(index_pages, base + ivec3(1, 1, 0), 0).r;
+        c.layers = min(c.layers, uvec4(rect.last_layer));
     }
-    vec3 t0 = texelFetch(tint_pages, base, 0).rgb;
-    vec3 t1 = texelFetch(tint_pages, base + ivec3(1, 0, 0), 0).rgb;
-    vec3 t2 = texelFetch(tint_pages, base + ivec3(0, 1, 0), 0).rgb;
-    vec3 t3 = texelFetch(tint_pages, base + ivec3(1, 1, 0), 0).rgb;
-    MaterialSample m = evaluate_material(layers, t0, t1, t2, t3, fraction, position, 0.0);
+    c.t0 = texelFetch(tint_pages, base, 0).rgb;
+    c.t1 = texelFetch(tint_pages, base + ivec3(1, 0, 0), 0).rgb;
+    c.t2 = texelFetch(tint_pages, base + ivec3(0, 1, 0), 0).rgb;
+    c.t3 = texelFetch(tint_pages, base + ivec3(1, 1, 0), 0).rgb;
+    c.fraction = fraction;
+    c.from_vertex = kDistortion ? place - corner : fraction;
+    c.vertex = rect.index_vertex + base.xy;
+    c.level = rect.index_level;
+    c.index_step = 1.0 / rect.index_scale;
+    c.position = position;
+    c.log2_texel = 0.0;
+    MaterialSample m = evaluate_material(c);
 
     ivec2 target = rect.scratch_min + at;
     precise vec3 albedo = sqrt(clamp(m.albedo, 0.0, 1.0));

@@ -31,8 +31,15 @@ struct ComposeRect {
     vec2 index_origin;   // the payload's corner in texels of the index page, border included
     float index_scale;   // index texels a payload side
     uint index_slot;
+    ivec2 index_vertex;  // the index page's texel (0, 0) in texels of its level, from the map's corner
+    int index_level;
+    // Distortion's place = origin + position * scale, in repeats of its map (distortion.h).
+    vec2 distortion_origin;
+    float distortion_scale;
+    float distortion_reach; // index texels of the level
+    float distortion_lod;
     uint first_place;    // of the rectangle's layer places
-    uint layer;          // of one-layer rectangles
+    uint layer;          // of one-layer rectangles; with tile hiding its key (tile_hiding.h)
     uint last_layer;     // larger indices in the map count as this one
     uint first_unit;     // of its output: blocks, or texels of RGBA8; mip by mip, texture by texture
     uint units;          // a texture

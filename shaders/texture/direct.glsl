@@ -12,7 +12,8 @@
 // | +5 | layers' albedo+reveal, sampler2DArray | LayerSet::albedo_reveal, LayerSet::sampler |
 // | +6 | layers' normal+gloss+occlusion | LayerSet::normal_gloss_occlusion, LayerSet::sampler |
 // | +7 | layers' metalness | LayerSet::metalness, LayerSet::sampler |
-// Specialisation constant 21: 1 where a layer has metal (LayerSet::has_metal).
+// | +9 | distortion map, sampler2DArray | LayerSet::distortion_map(), LayerSet::sampler |
+// Specialisation constants: 21 where a layer has metal (LayerSet::has_metal), 40 tile hiding, 41 distortion.
 //
 //     MaterialSample m = direct_material(rel.xy, log2_footprint); // camera-relative metres; log2 of metres a sample
 #ifndef LOAM_TEXTURE_DIRECT_GLSL
@@ -24,6 +25,8 @@
 #define DIRECT_FIRST_SLOT 0
 #endif
 layout(constant_id = 21) const bool kHasMetal = false;
+layout(constant_id = 40) const bool kTileHiding = false;
+layout(constant_id = 41) const bool kDistortion = false;
 const bool kOneLayer = false;
 layout(binding = DIRECT_FIRST_SLOT + 0, scalar) readonly buffer DirectParamsBuffer { DirectParams direct; };
 layout(binding = DIRECT_FIRST_SLOT + 1, scalar) readonly buffer DirectPlaces { LayerPlace direct_places[]; };
@@ -33,10 +36,12 @@ layout(binding = DIRECT_FIRST_SLOT + 4) uniform sampler2DArray direct_tints;
 layout(binding = DIRECT_FIRST_SLOT + 5) uniform sampler2DArray direct_albedo;
 layout(binding = DIRECT_FIRST_SLOT + 6) uniform sampler2DArray direct_normal;
 layout(binding = DIRECT_FIRST_SLOT + 7) uniform sampler2DArray direct_metal;
+layout(binding = DIRECT_FIRST_SLOT + 9) uniform sampler2DArray direct_distortion;
 
 #define MATERIAL_ALBEDO direct_albedo
 #define MATERIAL_NORMAL direct_normal
 #define MATERIAL_METAL direct_metal
+#define MATERIAL_DISTORTION direct_distortion
 #define MATERIAL_PLACE(layer) direct_places[layer]
 #include "shaders/texture/material.glsl"
 
@@ -44,6 +49,12 @@ MaterialSample direct_material(vec2 rel_m, float log2_footprint) {
     vec2 at_m = direct.camera_offset_m + rel_m; // from the corner of the camera's sector
     vec2 sector = floor(at_m * (1.0 / 64.0));
     vec2 in_sector = (at_m - sector * 64.0) * direct.texels_per_m;
+    vec2 moved = vec2(0); // texels of level 0
+    if (kDistortion) {
+        vec2 from = direct.distortion_origin + at_m * direct.distortion_scale;
+        moved = distortion_at(from, direct.distortion_lod_bias + log2_footprint) * direct.distortion_reach;
+        in_sector += moved;
+    }
     vec2 whole = floor(in_sector);
     vec2 rest = in_sector - whole;
     // Whole texels in integers: a 16 km map at 0.25 m is more than a float's fraction holds.
@@ -63,14 +74,22 @@ MaterialSample direct_material(vec2 rel_m, float log2_footprint) {
     ivec2 page = clamp(coarse >> 7, ivec2(0), direct.levels[level].yz - 1);
     ivec2 local = clamp(coarse - (page << 7), ivec2(-kIndexPageBorder), ivec2(130)) + kIndexPageBorder;
     ivec3 base = ivec3(local, int(slot == 0xffffu ? 0u : slot));
-    uvec4 layers = uvec4(texelFetch(direct_indices, base, 0).r, texelFetch(direct_indices, base + ivec3(1, 0, 0), 0).r,
-                         texelFetch(direct_indices, base + ivec3(0, 1, 0), 0).r,
-                         texelFetch(direct_indices, base + ivec3(1, 1, 0), 0).r);
-    layers = min(layers, uvec4(direct.last_layer));
-    vec3 t0 = texelFetch(direct_tints, base, 0).rgb;
-    vec3 t1 = texelFetch(direct_tints, base + ivec3(1, 0, 0), 0).rgb;
-    vec3 t2 = texelFetch(direct_tints, base + ivec3(0, 1, 0), 0).rgb;
-    vec3 t3 = texelFetch(direct_tints, base + ivec3(1, 1, 0), 0).rgb;
-    return evaluate_material(layers, t0, t1, t2, t3, fraction, at_m, log2_footprint);
+    MaterialCorners c;
+    c.layers = uvec4(texelFetch(direct_indices, base, 0).r, texelFetch(direct_indices, base + ivec3(1, 0, 0), 0).r,
+                     texelFetch(direct_indices, base + ivec3(0, 1, 0), 0).r,
+                     texelFetch(direct_indices, base + ivec3(1, 1, 0), 0).r);
+    c.layers = min(c.layers, uvec4(direct.last_layer));
+    c.t0 = texelFetch(direct_tints, base, 0).rgb;
+    c.t1 = texelFetch(direct_tints, base + ivec3(1, 0, 0), 0).rgb;
+    c.t2 = texelFetch(direct_tints, base + ivec3(0, 1, 0), 0).rgb;
+    c.t3 = texelFetch(direct_tints, base + ivec3(1, 1, 0), 0).rgb;
+    c.fraction = fraction;
+    c.from_vertex = fraction - moved * (1.0 / float(1 << level));
+    c.vertex = coarse;
+    c.level = level;
+    c.index_step = float(1 << level) / direct.texels_per_m;
+    c.position = at_m;
+    c.log2_texel = log2_footprint;
+    return evaluate_material(c);
 }
 #endif

@@ -3,12 +3,20 @@
 //
 // The includer declares, before including:
 //   MATERIAL_ALBEDO, MATERIAL_NORMAL, MATERIAL_METAL   names of the layers' sampler2DArrays (layer_set.h)
+//   MATERIAL_DISTORTION                                the distortion map, a sampler2DArray (any one where kDistortion is false)
 //   MATERIAL_PLACE(layer)                              the LayerPlace of a layer
-//   kOneLayer, kHasMetal                               constants (specialisation or not)
+//   kOneLayer, kHasMetal, kTileHiding, kDistortion     constants (specialisation or not)
 #ifndef LOAM_TEXTURE_MATERIAL_GLSL
 #define LOAM_TEXTURE_MATERIAL_GLSL
 #include "shaders/texture/compose_io.h"
 #include "shaders/texture/ompv.h"
+#include "shaders/texture/tile_hiding.h"
+
+// Cosine and sine of sixteenths of a circle.
+const float kQ = 0.92387953, kH = 0.70710678, kE = 0.38268343;
+const vec2 kTurns[16] = vec2[16](vec2(1, 0), vec2(kQ, kE), vec2(kH, kH), vec2(kE, kQ), vec2(0, 1), vec2(-kE, kQ), vec2(-kH, kH),
+                                 vec2(-kQ, kE), vec2(-1, 0), vec2(-kQ, -kE), vec2(-kH, -kH), vec2(-kE, -kQ), vec2(0, -1),
+                                 vec2(kE, -kQ), vec2(kH, -kH), vec2(kQ, -kE));
 
 struct MaterialSample {
     vec3 albedo;  // linear
@@ -18,11 +26,31 @@ struct MaterialSample {
     float metalness;
 };
 
-// layers, tints (sRGB-encoded): of the four corners; fraction: between them; position: what MATERIAL_PLACE scales;
-// log2_texel: added to a place's lod_bias. With kOneLayer only layers.x is looked at.
-MaterialSample evaluate_material(uvec4 layers, vec3 t0, vec3 t1, vec3 t2, vec3 t3, vec2 fraction, vec2 position,
-                                 float log2_texel) {
-    vec4 weights = ompv_weights(fraction);
+// The four index vertices around a place, and where it is.
+struct MaterialCorners {
+    uvec4 layers;       // with kOneLayer only x is looked at: a layer, or with kTileHiding its key
+    vec3 t0, t1, t2, t3; // tints, sRGB-encoded
+    vec2 fraction;      // of the lookup between the vertices
+    vec2 from_vertex;   // of the place itself: the same without distortion
+    ivec2 vertex;       // the lower left one, in texels of its level from the map's corner
+    int level;
+    float index_step;   // an index texel of that level, in units of position
+    vec2 position;      // what MATERIAL_PLACE scales
+    float log2_texel;   // added to a place's lod_bias
+};
+
+// How far the lookup of index and tint moves, -1 … 1 of the reach. Source: Call of Duty talk, "Distortion".
+vec2 distortion_at(vec2 at, float lod) {
+    return textureLod(MATERIAL_DISTORTION, vec3(at, 0.0), max(floor(lod + 0.5), 0.0)).xy;
+}
+
+MaterialSample evaluate_material(MaterialCorners c) {
+    uvec4 keys = c.layers;
+    if (kTileHiding && !kOneLayer)
+        keys = uvec4(tile_key(keys.x, c.vertex.x, c.vertex.y, c.level), tile_key(keys.y, c.vertex.x + 1, c.vertex.y, c.level),
+                     tile_key(keys.z, c.vertex.x, c.vertex.y + 1, c.level),
+                     tile_key(keys.w, c.vertex.x + 1, c.vertex.y + 1, c.level));
+    vec4 weights = ompv_weights(c.fraction);
     MaterialSample material;
     material.metalness = 0.0;
     vec3 albedo = vec3(0);
@@ -31,18 +59,33 @@ MaterialSample evaluate_material(uvec4 layers, vec3 t0, vec3 t1, vec3 t2, vec3 t
     uint from = 0u;
     // A loop, not four branches: it ends once eight lanes are done, which branches do not on software devices.
     for (int visit = 0; visit < (kOneLayer ? 1 : 4); ++visit) {
-        uint layer = kOneLayer ? layers.x : ompv_next(layers, weights, from);
-        if (layer == kNoLayer) break;
-        from = layer + 1u;
-        vec4 share = kOneLayer ? weights : ompv_share(layers, weights, layer);
-        vec3 tint = ompv_decode_tint(ompv_tint(share, t0, t1, t2, t3));
+        uint key = kOneLayer ? keys.x : ompv_next(keys, weights, from);
+        if (key == kNoLayer) break;
+        from = key + 1u;
+        vec4 share = kOneLayer ? weights : ompv_share(keys, weights, key);
+        vec3 tint = ompv_decode_tint(ompv_tint(share, c.t0, c.t1, c.t2, c.t3));
 
+        uint layer = kTileHiding ? key >> kKeyLayerShift : key;
         LayerPlace place = MATERIAL_PLACE(layer);
-        precise vec2 at = place.offset + position * place.scale;
+        precise vec2 at = place.offset + c.position * place.scale;
+        vec2 turn = vec2(1, 0);
+        if (kTileHiding) {
+            SectionPlace section = section_place(key, c.vertex, c.level);
+            turn = kTurns[key >> 2u & 15u];
+            precise vec2 from_middle = (c.from_vertex - section.middle) * (c.index_step * place.scale);
+            precise vec2 turned = vec2(turn.x * from_middle.x - turn.y * from_middle.y,
+                                       turn.y * from_middle.x + turn.x * from_middle.y);
+            at = turned + section.shift;
+        }
         vec3 uv = vec3(at, float(layer));
-        float lod = max(floor(place.lod_bias + log2_texel + 0.5), 0.0);
+        float lod = max(floor(place.lod_bias + c.log2_texel + 0.5), 0.0);
         vec4 albedo_reveal = textureLod(MATERIAL_ALBEDO, uv, lod);
         vec4 layer_surface = textureLod(MATERIAL_NORMAL, uv, lod);
+        if (kTileHiding) { // what is turned one way to be looked up is seen turned the other way
+            precise vec2 n = layer_surface.xy - 128.0 / 255.0;
+            precise vec2 seen = vec2(turn.x * n.x + turn.y * n.y, turn.x * n.y - turn.y * n.x);
+            layer_surface.xy = seen + 128.0 / 255.0;
+        }
 
         float cover = visit == 0 ? 1.0 : ompv_cover(ompv_alpha(ompv_sum(share)), albedo_reveal.a);
         precise vec3 next_albedo = albedo * (1.0 - cover) + albedo_reveal.rgb * tint * cover;

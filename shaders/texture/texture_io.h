@@ -88,6 +88,10 @@ struct DirectParams {
     int texels_per_sector;  // of level 0
     int level_count;
     uint last_layer;        // larger indices in the map count as this one
+    vec2 distortion_origin; // repeats of the distortion map at the camera's sector
+    float distortion_scale; // repeats a metre
+    float distortion_reach; // texels of level 0
+    float distortion_lod_bias; // log2 of the distortion's texels a metre
     ivec4 levels[kMaxIndexLevels]; // x: first entry in the page table, y: pages x, z: pages y, w: unused
 };
 

@@ -1,15 +1,15 @@
-// Composition against a plain composer written from the talk's description ("One Material Per Vertex": the
-// four index texels around a texel weigh bilinearly, equal layers are merged, alpha is doubled and clamped,
-// layers are sorted, the lowest is opaque, reveal cuts the edge), in doubles, with loops and a sort; and the
-// round trip of feedback until nothing is missing.
+// Composition against a plain composer (plain_composer.h); and the round trip of feedback until nothing is missing.
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <optional>
+#include <set>
 
 #include <glm/mat4x4.hpp>
 
 #include "shaders/frame/frame_io.h"
+#include "tests/gpu/plain_composer.h"
+#include "tests/gpu/texture_ask.h"
 #include "tests/gpu/texture_world.h"
 
 namespace {
@@ -19,122 +19,51 @@ using namespace loam::test;
 using gpu::Access;
 using ComposerTest = gpu::GpuTest;
 
-constexpr double kIndexSpacing_m = 0.5;  // MapFixtureDesc's
-constexpr double kSoftness = 0.25;       // of the reveal's edge
-
-double linear_of(double srgb) {
-    return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
-}
-
-struct RandomMap {
-    int width = 0, height = 0;
-    std::vector<IndexTexel> texels;
-    [[nodiscard]] const IndexTexel& at(int x, int y) const {
-        return texels[size_t(std::clamp(y, 0, height - 1)) * size_t(width) +
-                      size_t(std::clamp(x, 0, width - 1))];
-    }
-};
-
-// Speckles in some places, larger areas in others; tints that are not dark.
-RandomMap write_random_map(World& w) {
-    const glm::ivec2 size = w.document().index_size_texels();
-    RandomMap map{size.x, size.y, std::vector<IndexTexel>(size_t(size.x) * size_t(size.y))};
-    for (IndexTexel& t : map.texels) {
-        t.layer = uint16_t(w.fixture.uniform(0, 4) == 0 ? w.fixture.uniform(1, 2) : 0);
-        for (uint8_t& c : t.tint) c = uint8_t(w.fixture.uniform(128, 255));
-    }
-    BulkWriter writer(w.document());
-    for (int y = 0; y < size.y; ++y)
-        need(writer.write_index_rows(
-            y, 1, std::span(map.texels).subspan(size_t(y) * size_t(size.x), size_t(size.x))));
-    need(writer.finish());
-    return map;
-}
-
-using Channels =
-    std::array<double, 8>;  // albedo r g b linear, normal x y, gloss, occlusion as stored; reveal
-
-Channels layer_at(const LayerTextures& layer, int mip, double u, double v) {
-    const int side = std::max(1, int(layer.size_texels) >> mip);
-    const double x = (u - std::floor(u)) * side - 0.5, y = (v - std::floor(v)) * side - 0.5;
-    const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
-    Channels sum{};
-    for (int corner = 0; corner < 4; ++corner) {
-        const int i = corner & 1, j = corner >> 1;
-        const double weight = (i ? x - x0 : 1 - (x - x0)) * (j ? y - y0 : 1 - (y - y0));
-        const size_t at =
-            (size_t((y0 + j + side) % side) * size_t(side) + size_t((x0 + i + side) % side)) * 4;
-        const uint8_t* albedo = &layer.albedo_reveal[size_t(mip)][at];
-        const uint8_t* surface = &layer.normal_gloss_occlusion[size_t(mip)][at];
-        for (size_t c = 0; c < 3; ++c) sum[c] += weight * linear_of(albedo[c] / 255.0);
-        for (size_t c = 0; c < 4; ++c) sum[3 + c] += weight * surface[c] / 255.0;
-        sum[7] += weight * albedo[3] / 255.0;
-    }
-    return sum;
-}
-
-// What a texel stores in the three textures, 0 … 255.
-std::array<std::array<double, 3>, 3> plain_texel(const RandomMap& map,
-                                                 const std::vector<LayerTextures>& layers,
-                                                 const std::vector<double>& tiles_m, glm::dvec2 world,
-                                                 double texel_m) {
-    struct Merged {
-        double alpha = 0;
-        glm::dvec3 tint{0};
-    };
-    std::map<int, Merged> merged;  // sorted by layer
-    const glm::dvec2 at = world / kIndexSpacing_m, corner = glm::floor(at), f = at - corner;
-    for (int j = 0; j < 2; ++j)
-        for (int i = 0; i < 2; ++i) {
-            const IndexTexel& t = map.at(int(corner.x) + i, int(corner.y) + j);
-            const double weight = (i ? f.x : 1 - f.x) * (j ? f.y : 1 - f.y);
-            if (weight <= 0) continue;
-            Merged& m = merged[t.layer];
-            m.alpha += weight;
-            m.tint += weight * glm::dvec3(t.tint[0], t.tint[1], t.tint[2]) / 255.0;
-        }
-    Channels shown{};
-    bool lowest = true;
-    for (const auto& [layer, m] : merged) {
-        const double tile_m = tiles_m[size_t(layer)];
-        const LayerTextures& textures = layers[size_t(layer)];
-        const int mip =
-            std::max(0, int(std::floor(std::log2(texel_m * textures.size_texels / tile_m) + 0.5)));
-        Channels c = layer_at(textures, mip, world.x / tile_m, world.y / tile_m);
-        for (int k = 0; k < 3; ++k) c[size_t(k)] *= linear_of(m.tint[k] / m.alpha);
-        const double alpha = std::clamp(2 * m.alpha, 0.0, 1.0);
-        const double cover =
-            lowest ? 1 : std::clamp((alpha * (1 + kSoftness) - (1 - c[7])) / kSoftness, 0.0, 1.0);
-        for (size_t k = 0; k < 7; ++k) shown[k] += (c[k] - shown[k]) * cover;
-        lowest = false;
-    }
-    const auto normal = [](double stored) { return 130 + 125 * ((stored * 255 - 128) / 127); };
-    return {{{255 * std::sqrt(shown[0]), 255 * std::sqrt(shown[1]), 255 * std::sqrt(shown[2])},
-             {255 * shown[5], normal(shown[3]), 255 * shown[6]},
-             {0, normal(shown[4]), 0}}};
-}
-
 struct Difference {
     double worst = 0, mean = 0;
     int64_t above_one = 0, count = 0;
 };
 
-// All texels of some pages, borders included.
-Difference compare_pages(bool flat_layers) {
-    World w(small_desc(PageFormat::rgba8), flat_layers);
+struct Compared {
+    Difference difference;
+    std::set<int> turns;  // of the reference
+};
+
+GroundSettings everything_on() {
+    return {.distortion_amplitude_m = 0.45, .distortion_period_m = 11.3, .tile_hiding = true};
+}
+
+PlainWorld plain_world(World& w, const RandomMap& map, bool flat_layers) {
+    PlainWorld plain{.map = map, .tiles_m = w.layers->tiles_m, .ground = w.document().settings().ground};
+    for (int i = 1; i <= w.layers->count; ++i) plain.layers.push_back(make_layer(i, flat_layers));
+    return plain;
+}
+
+// All texels of some pages, borders included. `believed`: what the reference is told of the ground.
+Compared compare_pages(bool flat_layers, const GroundSettings& ground = {},
+                       const std::optional<GroundSettings>& believed = {}) {
+    World w(small_desc(PageFormat::rgba8), flat_layers, {.layers = 9, .ground = ground});
     const RandomMap map = write_random_map(w);
-    std::vector<LayerTextures> layers;
-    for (int i = 1; i <= 3; ++i) layers.push_back(make_layer(i, flat_layers));
+    PlainWorld plain = plain_world(w, map, flat_layers);
+    if (believed) plain.ground = *believed;
     w.want_some_pages();
     w.run_frames(14);
     const int side = small_desc(PageFormat::rgba8).pages_per_side;
     std::array<std::vector<uint32_t>, 3> atlas;
     for (int which = 0; which < 3; ++which) atlas[size_t(which)] = w.read_u32(w.texture->atlas(which));
     const int finest = w.texture->layout().default_log2_width;
-    const PageId pages[] = {
-        {{true, 1, 1}, 6, 20, 31}, {{true, 1, 1}, 6, 21, 32}, {{true, 1, 1}, 3, 2, 3}, {{}, finest, 1, 1}};
-    Difference d;
-    for (const PageId& page : pages) {
+    struct Asked {
+        PageId page;
+        int index_level;
+    };
+    const Asked pages[] = {{{{true, 1, 1}, 6, 20, 31}, 0},
+                           {{{true, 1, 1}, 6, 21, 32}, 0},
+                           {{{true, 1, 1}, 3, 2, 3}, 0},
+                           {{{}, finest, 1, 1}, 0},
+                           {{{}, finest - 1, 0, 0}, 1}};
+    Compared result;
+    Difference& d = result.difference;
+    for (const auto& [page, level] : pages) {
         const int place = w.texture->place_of(page);
         EXPECT_GE(place, 0) << "depth " << page.depth;
         if (place < 0) continue;
@@ -144,7 +73,7 @@ Difference compare_pages(bool flat_layers) {
             for (int x = 0; x < kPageTexels; ++x) {
                 const glm::dvec2 world(square.min_x + (x - kPageBorder + 0.5) * texel_m,
                                        square.min_y + (y - kPageBorder + 0.5) * texel_m);
-                const auto wanted = plain_texel(map, layers, w.layers->tiles_m, world, texel_m);
+                const auto wanted = stored_texel(plain_material(plain, world, texel_m, level, &result.turns));
                 const size_t at = size_t(place / side * kPageTexels + y) * size_t(side * kPageTexels) +
                                   size_t(place % side * kPageTexels + x);
                 for (size_t which = 0; which < 3; ++which)
@@ -159,28 +88,113 @@ Difference compare_pages(bool flat_layers) {
             }
     }
     d.mean /= double(std::max<int64_t>(d.count, 1));
-    std::printf("%s layers: worst %.2f/255, mean %.3f/255, above 1/255: %.4f %%\n",
-                flat_layers ? "flat" : "rough", d.worst, d.mean,
+    std::printf("%s layers%s%s: worst %.2f/255, mean %.3f/255, above 1/255: %.4f %%\n",
+                flat_layers ? "flat" : "rough", ground.tile_hiding ? ", tile hiding" : "",
+                ground.distortion_amplitude_m > 0 ? ", distortion" : "", d.worst, d.mean,
                 100.0 * double(d.above_one) / double(std::max<int64_t>(d.count, 1)));
-    return d;
+    return result;
 }
 
 // Rounding to a byte is half a step; the tint's cubic (ompv.h) is the rest.
 TEST_F(ComposerTest, FlatLayersAreWithinOneStepOfThePlainComposer) {
-    const Difference d = compare_pages(true);
-    EXPECT_GT(d.count, 0);
-    EXPECT_LE(d.worst, 1.0);
-    EXPECT_EQ(d.above_one, 0);
+    for (const GroundSettings& ground : {GroundSettings{}, everything_on()}) {
+        const Difference d = compare_pages(true, ground).difference;
+        EXPECT_GT(d.count, 0);
+        EXPECT_LE(d.worst, 1.0);
+        EXPECT_EQ(d.above_one, 0);
+    }
 }
 
 // A device filters with 8 bits of fraction at least, and a reveal's error counts four times where it cuts an
 // edge.
 TEST_F(ComposerTest, RoughLayersAreWithinTheFiltersTolerance) {
-    const Difference d = compare_pages(false);
-    EXPECT_GT(d.count, 0);
-    EXPECT_LE(d.worst, 2.5);
-    EXPECT_LT(d.mean, 0.5);
-    EXPECT_LT(double(d.above_one), 0.02 * double(d.count));
+    for (const GroundSettings& ground : {GroundSettings{}, everything_on()}) {
+        const Compared compared = compare_pages(false, ground);
+        const Difference& d = compared.difference;
+        EXPECT_GT(d.count, 0);
+        EXPECT_LE(d.worst, 3.0);
+        EXPECT_LT(d.mean, 0.5);
+        EXPECT_LT(double(d.above_one), 0.02 * double(d.count));
+        EXPECT_EQ(compared.turns.size(), ground.tile_hiding ? 16u : 1u) << "every turn was seen";
+    }
+}
+
+// The comparisons above can fail: a reference that is not told of a setting is far off.
+TEST_F(ComposerTest, AReferenceWithoutTheSettingsDiffers) {
+    GroundSettings less = everything_on();
+    less.tile_hiding = false;
+    EXPECT_GT(compare_pages(false, everything_on(), less).difference.worst, 20);
+    less = everything_on();
+    less.distortion_amplitude_m *= 0.9;
+    EXPECT_GT(compare_pages(true, everything_on(), less).difference.worst, 20);
+}
+
+// Exactly on vertices, halfway between two and between four, where weights tie: the direct path takes any place.
+TEST_F(ComposerTest, VerticesAndTiesAreAsThePlainComposerHasThem) {
+    for (const GroundSettings& ground : {GroundSettings{}, GroundSettings{.tile_hiding = true}}) {
+        World w(small_desc(PageFormat::rgba8), true, {.layers = 9, .ground = ground});
+        const RandomMap map = write_random_map(w);
+        const PlainWorld plain = plain_world(w, map, true);
+        w.want_some_pages();
+        w.run_frames(14);
+        const float log2_texel = std::log2(1.0f / float(kPagePayload));
+        std::vector<Query> queries;
+        for (int j = -8; j < 8; ++j)
+            for (int i = -8; i < 8; ++i)
+                queries.push_back({{float(i) * 0.25f, float(j) * 0.25f}, log2_texel, 0});
+        const auto got = ask(w, "test/direct.comp", queries, true);
+        double worst = 0;
+        for (size_t i = 0; i < queries.size(); ++i) {
+            const glm::dvec2 world = glm::dvec2(w.view.camera_m) + glm::dvec2(queries[i].rel_m);
+            const Channels wanted = plain_material(plain, world, 1.0 / kPagePayload, 0);
+            for (int c = 0; c < 3; ++c)
+                worst = std::max(worst, std::abs(std::sqrt(double(got[i].albedo_gloss[c])) -
+                                                 std::sqrt(wanted[size_t(c)])));
+            worst = std::max(worst, std::abs(double(got[i].albedo_gloss.w) - wanted[5]));
+        }
+        std::printf("vertices and ties%s: worst %.2f/255\n", ground.tile_hiding ? ", tile hiding" : "",
+                    worst * 255);
+        EXPECT_LE(worst * 255, 1.0);
+    }
+}
+
+// Dirt of an index edit reaches as far as distortion does: nothing that was composed before is stale.
+TEST_F(ComposerTest, EditsUnderDistortionAndTileHidingLeaveNoStaleTexel) {
+    World w(small_desc(PageFormat::rgba8), false, {.ground = everything_on()});
+    w.want_some_pages();
+    w.run_frames(14);
+    for (int i = 0; i < 12; ++i) {
+        PaintCommand paint;
+        paint.dabs = {glm::dvec2(w.view.camera_m) + glm::dvec2(w.fixture.real(-6, 6), w.fixture.real(-6, 6))};
+        paint.radius_m = w.fixture.real(0.2, 2);
+        paint.layer = i % 2 ? "scree" : "dirt";
+        paint.tint = glm::dvec3(w.fixture.real(0, 1), 0.5, 0.25);
+        w.on_dirt(w.fixture.apply(paint));
+        w.run_frames(3);
+    }
+    w.run_frames(20);
+    EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
+}
+
+// Settings change live: pages follow, and what is off takes no memory.
+TEST_F(ComposerTest, SettingsOfTheGroundChangeLive) {
+    World w(small_desc(PageFormat::rgba8));
+    w.want_some_pages();
+    w.run_frames(14);
+    const auto before = w.read_u32(w.texture->atlas(0));
+    EXPECT_FALSE(w.layers->distortion);
+    const auto change = [&](const GroundSettings& ground) {
+        need(w.layers->take_ground(*w.ring, ground));
+        need(w.texture->take_ground());
+        w.run_frames(30);
+        EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
+    };
+    change(everything_on());
+    EXPECT_TRUE(w.layers->distortion);
+    EXPECT_NE(w.read_u32(w.texture->atlas(0)), before);
+    change({});
+    EXPECT_FALSE(w.layers->distortion);
+    EXPECT_EQ(w.read_u32(w.texture->atlas(0)), before) << "off is as if it had never been on";
 }
 
 // --- feedback ---

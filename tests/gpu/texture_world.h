@@ -25,7 +25,7 @@ inline void need(const Status& status) {
     LOAM_CHECK(status.ok(), status.ok() ? "" : status.message());
 }
 
-// Rough: noise of the texel; flat: one colour.
+// Rough: noise of the texel; flat: one colour. Of four layers one has a reveal of 0 and one of 1 everywhere.
 inline LayerTextures make_layer(int seed, bool flat) {
     LayerTextures t;
     t.size_texels = 64;
@@ -35,11 +35,12 @@ inline LayerTextures make_layer(int seed, bool flat) {
     for (int i = 0; i < 64 * 64; ++i) {
         const uint32_t h =
             flat ? uint32_t(seed) * 2654435761u : (uint32_t(i) + uint32_t(seed) * 7919u) * 2654435761u;
+        const uint8_t reveal = seed % 4 == 3 ? 255 : seed % 4 == 0 ? 0 : uint8_t((h >> 20) % 255);
         const auto byte = [&](int shift, int low, int high) {
             return uint8_t(low + int((h >> shift) % uint32_t(high - low)));
         };
         t.albedo_reveal[0].insert(t.albedo_reveal[0].end(),
-                                  {byte(3, 60, 160), byte(9, 60, 140), byte(14, 40, 120), byte(20, 0, 255)});
+                                  {byte(3, 60, 160), byte(9, 60, 140), byte(14, 40, 120), reveal});
         const uint8_t nx = flat ? 128 : byte(7, 100, 156), ny = flat ? 128 : byte(13, 100, 156);
         t.normal_gloss_occlusion[0].insert(t.normal_gloss_occlusion[0].end(),
                                            {nx, ny, byte(17, 40, 120), byte(5, 180, 255)});
@@ -55,8 +56,8 @@ struct World {
         const auto layers_folder = document().folder() / "layers";
         std::filesystem::create_directories(layers_folder);
         int seed = 1;
-        for (const char* name : {"grass", "dirt", "scree"})
-            need(save_layer(layers_folder / (std::string(name) + ".layer"), make_layer(seed++, flat_layers)));
+        for (const LayerEntry& entry : document().settings().layers)
+            need(save_layer(document().folder() / entry.file, make_layer(seed++, flat_layers)));
         ring = need(gpu::FrameRing::create(gpu::test_device(), 2));
         layers = need(LayerSet::create(*ring, document()));
         index = need(IndexMap::create(&gpu::test_device(), document(), {.slot_count = 64}));

@@ -4,7 +4,7 @@ import json
 import loam
 import numpy as np
 import pytest
-from conftest import run_loam
+from conftest import fails_with_one_sentence, run_loam
 
 
 def test_raise_lifts_the_ground_at_its_centre_and_nowhere_else(plain):
@@ -130,3 +130,22 @@ def test_a_read_only_project_refuses_edits(plain):
     with loam.open(str(plain), read_only=True) as p:
         with pytest.raises(loam.Error):
             p.crater(10, 10)
+
+
+def test_settings_of_the_ground_are_set_and_refused(plain):
+    done = run_loam("set", plain, "ground.tile_hiding", "true")
+    assert done.returncode == 0, done.stderr
+    assert run_loam("set", plain, "ground.distortion_amplitude_m", "0.5").returncode == 0
+    with loam.open(str(plain)) as p:
+        ground = p.stats()["settings"]["ground"]
+        assert ground["tile_hiding"] is True and ground["distortion_amplitude_m"] == 0.5
+        p.set("ground.tile_hiding", False)
+        p.set("ground.distortion_period_m", 12)
+        with pytest.raises(loam.Error, match="unknown setting"):
+            p.set("ground.colour", 1)
+        with pytest.raises(loam.Error, match="one index texel"):
+            p.set("ground.distortion_amplitude_m", 1000)
+    text = (plain / "project.toml").read_text()
+    assert "tile_hiding = false" in text and "distortion_period_m = 12.0" in text
+    assert "must be true or false" in fails_with_one_sentence(run_loam("set", plain, "ground.tile_hiding", "1"))
+    assert "must be a number" in fails_with_one_sentence(run_loam("set", plain, "sun.azimuth_rad", "north"))

@@ -23,6 +23,8 @@ struct MapFixtureDesc {
     int refine = 2;
     double index_spacing_m = 0.5;
     double relief_m = 20;
+    int layers = 3;  // beyond grass, dirt and scree: "layer 3" and so on
+    GroundSettings ground;
 };
 
 class MapFixture {
@@ -40,6 +42,11 @@ class MapFixture {
         settings.index_spacing_m = desc.index_spacing_m;
         settings.layers = {
             {"grass", "layers/grass.layer"}, {"dirt", "layers/dirt.layer"}, {"scree", "layers/scree.layer"}};
+        for (int i = 3; i < desc.layers; ++i) {
+            const std::string name = "layer " + std::to_string(i);
+            settings.layers.push_back({name, "layers/" + name + ".layer"});
+        }
+        settings.ground = desc.ground;
         auto created = Document::create(folder_, settings);
         if (!created) {
             ADD_FAILURE() << created.message();

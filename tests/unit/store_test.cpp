@@ -199,6 +199,7 @@ TEST(project, comes_back_as_it_was) {
     s.roles.broken = "grass";
     s.default_layer = 2;
     s.layers[1].tile_m = 1.0 / 3;
+    s.ground = {.distortion_amplitude_m = 0.7, .distortion_period_m = 12.5, .tile_hiding = true};
     ASSERT_TRUE(save_project(folder.path(), s).ok());
     const auto t = take(load_project(folder.path()));
     EXPECT_EQ(t.name, s.name);
@@ -211,6 +212,7 @@ TEST(project, comes_back_as_it_was) {
     ASSERT_EQ(t.layers.size(), 3u);
     EXPECT_EQ(t.layers[1].tile_m, 1.0 / 3);
     EXPECT_EQ(t.height_samples_y, 207);
+    EXPECT_EQ(t.ground, s.ground);
 }
 
 TEST(project, errors_are_sentences_with_the_line) {
@@ -228,6 +230,10 @@ TEST(project, errors_are_sentences_with_the_line) {
         {good + "[[layer]]\nfile = \"a\"\n", "a layer needs a name"},
         {good + "[[layer]]\nname = \"a\"\n[[layer]]\nname = \"a\"\n", "two layers are called \"a\""},
         {good + "[[layer]]\nname = \"a\"\nfile = \"../../etc/passwd\"\n", "outside the project"},
+        {good + "[ground]\ntile_hiding = 1\n", ":5: tile_hiding must be true or false"},
+        {good + "[ground]\ndistortion_amplitude_m = 1.5\n", "must be 0 … 1 (index_spacing_m)"},
+        {good + "[ground]\ndistortion_amplitude_m = nan\n", ":5: distortion_amplitude_m is nan"},
+        {good + "[ground]\ndistortion_period_m = 0\n", ":5: distortion_period_m is 0"},
         {good + "refine = \n", ":4: "},
         {"name = \"x\"\n", "height_samples is missing"},
         {"[terrain]\nheight_samples = 7\n", ":2: height_samples must be [east, north]"},
