@@ -36,8 +36,18 @@ Json to_report(const Document::Statistics& s) {
 Json to_report(const ProjectSettings& s) {
     const WorldRect bounds = s.bounds();
     Json layers = Json::array();
-    for (const LayerEntry& layer : s.layers)
-        layers.push_back({{"name", layer.name}, {"file", layer.file}, {"tile_m", layer.tile_m}});
+    for (const LayerEntry& layer : s.layers) {
+        layers.push_back({{"name", layer.name}});
+        Json& row = layers.back();
+        if (layer.blend) {
+            row["blend"] = {layer.blend->from, layer.blend->to};
+            row["threshold"] = layer.blend->threshold;
+            if (layer.blend->removed) row["removed"] = true;
+            continue;
+        }
+        row["file"] = layer.file;
+        row["tile_m"] = layer.tile_m;
+    }
     return {{"name", s.name},
             {"size_m", {bounds.width(), bounds.height()}},
             {"height_samples", {s.height_samples_x, s.height_samples_y}},

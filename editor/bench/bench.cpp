@@ -25,6 +25,8 @@ const std::vector<BenchName>& benches() {
         {"flat", "a flight over the same ground on maps of 1, 4 and 16 km", bench_flat},
         {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
         {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},
+        {"materials", "pages by layers and features; how tile hiding hides; transitions against authored ones",
+         bench_materials},
         {"pop", "steps between the frames of a slow approach against the reference's own", bench_pop},
         {"quality",
          "quality levels and page formats: milliseconds, memory, error against the reference by cause",

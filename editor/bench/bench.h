@@ -49,6 +49,7 @@ Result<BenchReport> bench_feedback(const BenchRequest& request);
 Result<BenchReport> bench_flat(const BenchRequest& request);
 Result<BenchReport> bench_frame(const BenchRequest& request);
 Result<BenchReport> bench_ground(const BenchRequest& request);
+Result<BenchReport> bench_materials(const BenchRequest& request);
 Result<BenchReport> bench_pop(const BenchRequest& request);
 Result<BenchReport> bench_quality(const BenchRequest& request);
 Result<BenchReport> bench_resolve(const BenchRequest& request);

@@ -30,6 +30,7 @@ struct Verb {
 [[nodiscard]] Verb render_verb();
 [[nodiscard]] Verb info_verb();
 [[nodiscard]] Verb set_verb();
+[[nodiscard]] Verb transition_verb();
 [[nodiscard]] Verb verify_verb();
 [[nodiscard]] Verb bench_verb();
 

@@ -7,6 +7,7 @@
 
 #include "editor/choices.h"
 #include "editor/settings_text.h"
+#include "editor/transitions.h"
 
 namespace loam::python {
 
@@ -156,6 +157,17 @@ uint32_t count_stale_pages(Project& p) {
     return unwrap(renderer->count_stale_pages(*session.ring()));
 }
 
+void set(Project& p, const std::string& name, const py::object& value) {
+    std::string text;
+    if (py::isinstance<py::bool_>(value))
+        text = value.cast<bool>() ? "true" : "false";
+    else
+        text = py::str(value);
+    ProjectSettings settings = p.session().document().settings();
+    unwrap(set_by_name(settings, name, text));
+    unwrap(p.session().change_settings(settings));
+}
+
 void bind_edits(py::class_<Project>& c) {
     using Points = std::vector<std::array<double, 2>>;
     c.def("apply", &Project::apply, "Applies a command (a dict or JSON); returns the rectangles it touched.",
@@ -229,19 +241,26 @@ void bind_edits(py::class_<Project>& c) {
     c.def_property_readonly("can_redo", [](Project& p) { return p.session().document().can_redo(); });
     c.def("set", &set, "Changes a setting, as `loam set` names them.", py::arg("name"), py::arg("value"));
     c.def(
+        "transition",
+        [](Project& p, const std::string& name, const std::string& from, const std::string& to,
+           std::optional<double> threshold) {
+            ProjectSettings settings = p.session().document().settings();
+            unwrap(put_transition(settings, {name, from, to, threshold}));
+            unwrap(p.session().change_settings(settings));
+        },
+        "Makes or changes a transition between two layers.", py::arg("name"), py::arg("from_layer") = "",
+        py::arg("to_layer") = "", py::arg("threshold") = py::none());
+    c.def(
+        "remove_transition",
+        [](Project& p, const std::string& name) {
+            ProjectSettings settings = p.session().document().settings();
+            unwrap(remove_transition(settings, name));
+            unwrap(p.session().change_settings(settings));
+        },
+        "Its texels show the nearer of its layers from now on.", py::arg("name"));
+    c.def(
         "record_to", [](Project& p, const std::string& file) { unwrap(p.session().record_to(file)); },
         "Appends every command from now on to a script.", py::arg("file"));
-}
-
-void set(Project& p, const std::string& name, const py::object& value) {
-    std::string text;
-    if (py::isinstance<py::bool_>(value))
-        text = value.cast<bool>() ? "true" : "false";
-    else
-        text = py::str(value);
-    ProjectSettings settings = p.session().document().settings();
-    unwrap(set_by_name(settings, name, text));
-    unwrap(p.session().change_settings(settings));
 }
 
 void bind_queries(py::class_<Project>& c) {

@@ -40,7 +40,7 @@ App::App(Session& opened, const ui::Theme&)
       tools({.next_group = [this] { return session.document().next_group(); },
              .layer_at = [this](double x, double y) { return layer_name_at(x, y); }}),
       camera(opened.default_camera(), [this](double x, double y) { return height_at(x, y); }) {
-    for (const LayerEntry& layer : session.document().settings().layers) layer_names.push_back(layer.name);
+    read_layer_names();
     if (!layer_names.empty()) tools.settings.layer = layer_names.front();
     // Sizes that suit the map: a brush that is seen from where the camera starts.
     const WorldRect bounds = session.document().bounds();
@@ -132,6 +132,12 @@ const std::vector<HistoryStep>& App::history() {
 void App::change_settings(const ProjectSettings& settings) {
     if (const Status status = session.document().change_settings(settings); !status) return fail(status.message());
     settings_changed_ = scene_changed_ = true;
+    read_layer_names();
+}
+
+void App::read_layer_names() {
+    layer_names.clear();
+    for (const LayerEntry& layer : session.document().settings().layers) layer_names.push_back(layer.name);
 }
 
 void App::set_tool(Tool tool) {

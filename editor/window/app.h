@@ -79,6 +79,7 @@ class App {
     // Undoes or redoes until `sequence` is the newest applied command (0: none).
     void go_to(uint64_t sequence);
     void change_settings(const ProjectSettings& settings);
+    int transition_from = 0, transition_to = 1; // of the next one to be made; among the layers with textures
     void set_tool(Tool tool);
     void set_layer(int index);
     [[nodiscard]] int layer() const; // of the paint tool, -1: none
@@ -124,6 +125,8 @@ class App {
     std::vector<std::string> errors_;
     std::vector<HistoryStep> history_;
     uint64_t history_revision_ = ~uint64_t{0};
+    void read_layer_names();
+
     bool scene_changed_ = true, settings_changed_ = false;
 
     CameraInput::Drag drag_ = CameraInput::Drag::none;

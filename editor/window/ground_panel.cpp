@@ -1,9 +1,49 @@
-// How the layers are laid over the ground: distortion, tile hiding.
+// How the layers are laid over the ground: transitions between them, distortion, tile hiding.
 #include <algorithm>
 
+#include "editor/transitions.h"
 #include "editor/window/panels.h"
 
 namespace loam::window {
+
+// The selected layer's, if it is one; and what makes another.
+void transition_properties(App& app, ui::Ui& ui) {
+    ProjectSettings settings = app.session.document().settings();
+    const int selected = app.layer();
+    if (selected >= 0 && settings.layers[size_t(selected)].blend) {
+        LayerEntry& entry = settings.layers[size_t(selected)];
+        ui::label(ui, fmt::format("{} to {}", entry.blend->from, entry.blend->to));
+        double percent = entry.blend->threshold * 100;
+        if (ui::slider(ui, "Threshold", percent,
+                       {.min = 0, .max = 100, .decimals = 0, .unit = "%", .tooltip = "How much of the second layer shows"})) {
+            entry.blend->threshold = percent / 100;
+            app.change_settings(settings);
+        }
+        if (ui::button(ui, "Remove transition", {.tooltip = "Its ground shows the nearer of the two layers"})) {
+            const Status status = remove_transition(settings, entry.name);
+            if (!status) return app.fail(status.message());
+            app.set_layer(0);
+            app.change_settings(settings);
+        }
+        ui::separator(ui);
+    }
+    std::vector<std::string_view> sides;
+    for (const LayerEntry& layer : settings.layers)
+        if (!layer.blend) sides.push_back(layer.name);
+    if (sides.size() < 2) return ui::label(ui, "A transition needs two layers", ui::Tone::dim);
+    const int last = int(sides.size()) - 1;
+    app.transition_from = std::clamp(app.transition_from, 0, last);
+    app.transition_to = std::clamp(app.transition_to, 0, last);
+    ui::combo(ui, "From", app.transition_from, sides);
+    ui::combo(ui, "To", app.transition_to, sides);
+    if (!ui::button(ui, "Make transition")) return;
+    const std::string from(sides[size_t(app.transition_from)]), to(sides[size_t(app.transition_to)]);
+    const std::string name = fmt::format("{} to {}", from, to);
+    const Status status = put_transition(settings, {.name = name, .from = from, .to = to, .threshold = {}});
+    if (!status) return app.fail(status.message());
+    app.change_settings(settings);
+    app.set_layer(int(std::find(app.layer_names.begin(), app.layer_names.end(), name) - app.layer_names.begin()));
+}
 
 void ground_properties(App& app, ui::Ui& ui) {
     ProjectSettings settings = app.session.document().settings();

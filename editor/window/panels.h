@@ -8,7 +8,8 @@ namespace loam::window {
 void build_menus(App& app, ui::Ui& ui);
 void build_tool_bar(App& app, ui::Ui& ui);
 void build_properties(App& app, ui::Ui& ui); // the right panel: tool, layers, sun, history
-void ground_properties(App& app, ui::Ui& ui); // a section of it
+void transition_properties(App& app, ui::Ui& ui); // sections of it
+void ground_properties(App& app, ui::Ui& ui);
 void build_status_line(App& app, ui::Ui& ui);
 void build_shader_errors(App& app, ui::Ui& ui); // only while there are some
 void build_dialogs(App& app, ui::Ui& ui);

@@ -78,6 +78,7 @@ void tool_properties(App& app, ui::Ui& ui) {
             brush_properties(ui, app.tools.brush(), true);
             slope_limits(ui, settings);
             tint_properties(ui, settings);
+            ui::checkbox(ui, "Transitions", settings.transitions);
             break;
         case Tool::crater: crater_properties(ui, app); break;
         case Tool::footprints: gait_properties(ui, settings.gait); break;
@@ -87,13 +88,19 @@ void tool_properties(App& app, ui::Ui& ui) {
 
 void layer_palette(App& app, ui::Ui& ui) {
     if (app.layer_names.empty()) return ui::label(ui, "The project has no layers", ui::Tone::dim);
+    const std::vector<LayerEntry>& entries = app.session.document().settings().layers;
     std::vector<ui::Tile> tiles;
-    for (size_t i = 0; i < app.layer_names.size(); ++i)
+    std::vector<int> layers; // by tile: removed transitions have none
+    int selected = -1;
+    for (size_t i = 0; i < app.layer_names.size(); ++i) {
+        if (entries[i].blend && entries[i].blend->removed) continue;
+        if (int(i) == app.layer()) selected = int(layers.size());
+        layers.push_back(int(i));
         tiles.push_back({.caption = app.layer_names[i],
                          .texture = i < app.layer_pictures.size() ? app.layer_pictures[i] : 0});
-    int selected = app.layer();
+    }
     if (ui::tile_grid(ui, "layers", tiles, selected, {.picture = 56})) {
-        app.set_layer(selected);
+        app.set_layer(layers[size_t(selected)]);
         app.set_tool(Tool::paint);
     }
 }
@@ -149,6 +156,7 @@ void build_properties(App& app, ui::Ui& ui) {
     const std::string title = fmt::format("{}##tool", tool_title(app.tools.tool));
     if (auto section = ui::section(ui, title)) tool_properties(app, ui);
     if (auto section = ui::section(ui, "Layers")) layer_palette(app, ui);
+    if (auto section = ui::section(ui, "Transitions", ui::Section::closed)) transition_properties(app, ui);
     if (auto section = ui::section(ui, "Ground")) ground_properties(app, ui);
     if (auto section = ui::section(ui, "Sun")) sun_properties(app, ui);
     if (auto section = ui::section(ui, "History")) history_list(app, ui);

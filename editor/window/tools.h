@@ -36,6 +36,7 @@ struct ToolSettings {
     bool flatten_fixed = false;            // else the height where the stroke began
     std::string layer;
     bool use_tint = false;
+    bool transitions = false;              // painting places them where layers meet
     glm::vec3 tint{1, 1, 1};               // sRGB-encoded
     double min_slope_rad = 0, max_slope_rad = 1.5707963267948966;
     double crater_depth_share = 0.4;       // of the radius

@@ -63,12 +63,9 @@ Result<std::filesystem::path> edit(Platform& platform, ui::Text& text, const Win
 
     auto renderer = session.renderer();
     if (!renderer) return renderer.error();
-    auto pictures = screen->presenter->add_pictures((*renderer)->layers().thumbnails, 64);
-    if (!pictures) return pictures.error();
     if (!options.record.empty() && first) LOAM_TRY(session.record_to(options.record));
 
     App app(session, theme);
-    app.layer_pictures = *pictures;
     WindowLoop loop({.platform = platform,
                      .session = session,
                      .renderer = **renderer,

@@ -40,6 +40,7 @@ WindowLoop::WindowLoop(const LoopParts& parts)
 }
 
 Result<std::filesystem::path> WindowLoop::run() {
+    LOAM_TRY(add_layer_pictures());
     while (!platform_.should_close() && !app_.quit) {
         wait_for_work();
         LOAM_TRY(iterate());
@@ -104,7 +105,10 @@ Status WindowLoop::iterate() {
     report_.message(app_.message());
     wake_s_ = out.wake_s;
 
-    if (app_.take_settings_changed()) LOAM_TRY(renderer_.settings_changed(*session_.ring()));
+    if (app_.take_settings_changed()) {
+        LOAM_TRY(renderer_.settings_changed(*session_.ring()));
+        LOAM_TRY(add_layer_pictures());
+    }
     if (app_.take_scene_changed()) pacer_.changed(now);
     pacer_.advance(now);
     const bool draw_now = out.picture_changed || exposed || resized || pacer_.due();
@@ -170,6 +174,20 @@ Status WindowLoop::draw(const ui::FrameOutput& out, double now_s) {
         build_again_ = true; // the status line says so
     }
     if (resting && !build_again_) report_.idle(redraws(), app_.frame.scene_frames);
+    return {};
+}
+
+Status WindowLoop::add_layer_pictures() {
+    const LayerSet& layers = renderer_.layers();
+    pictured_layers_.resize(layers.names.size());
+    app_.layer_pictures.resize(layers.names.size());
+    for (size_t i = 0; i < layers.names.size(); ++i) {
+        if (pictured_layers_[i] == layers.names[i]) continue;
+        auto added = presenter_.add_pictures({&layers.thumbnails[i], 1}, 64);
+        if (!added) return added.error();
+        app_.layer_pictures[i] = added->front();
+        pictured_layers_[i] = layers.names[i];
+    }
     return {};
 }
 

@@ -79,7 +79,9 @@ Status Document::Impl::compute(const PaintCommand& command, Change& change) {
     }
     change.texels.emplace(*pages, index, default_texel(settings));
     SlopeReader slopes(*pages, height, settings.default_height_mm);
-    LOAM_TRY(paint(command, uint16_t(layer), slopes, *change.texels));
+    LOAM_TRY(paint(command, uint16_t(layer),
+                   command.transitions ? transitions_of(settings) : std::vector<Transition>(), slopes,
+                   *change.texels));
     std::vector<TexelRect> changed;
     auto result = change.texels->finish(changed);
     if (!result.ok()) return result.error();

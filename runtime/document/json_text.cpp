@@ -51,6 +51,7 @@ class Fields {
         const Json* value = find(key);
         return value ? whole_of(*value, key, most) : otherwise;
     }
+    bool truth(const char* key, bool otherwise) { return find(key) ? truth(key) : otherwise; }
     bool truth(const char* key) {
         const Json& value = need(key);
         if (!value.is_boolean())
@@ -158,6 +159,7 @@ PaintCommand read_paint(Fields& fields) {
     c.min_slope_rad = fields.number("min_slope_rad", c.min_slope_rad);
     c.max_slope_rad = fields.number("max_slope_rad", c.max_slope_rad);
     c.seed = uint32_t(fields.whole("seed", kMaxU32, 0));
+    c.transitions = fields.truth("transitions", c.transitions);
     return c;
 }
 
@@ -236,6 +238,7 @@ void write(Json& json, const PaintCommand& c) {
     json["min_slope_rad"] = c.min_slope_rad;
     json["max_slope_rad"] = c.max_slope_rad;
     json["seed"] = c.seed;
+    if (c.transitions) json["transitions"] = true;
 }
 
 void write(Json& json, const CraterCommand& c) {

@@ -48,7 +48,8 @@ double paint_falloff(const PaintCommand& command, const DabFootprint& dab, bool 
 
 }  // namespace
 
-Status paint(const PaintCommand& command, uint16_t layer, SlopeReader& slopes, PageEdits<IndexTexel>& edits) {
+Status paint(const PaintCommand& command, uint16_t layer, const std::vector<Transition>& transitions,
+             SlopeReader& slopes, PageEdits<IndexTexel>& edits) {
     const SlopeRange slope = slope_range(command);
     const MapShape& shape = edits.shape();
     const bool finer_than_map = command.radius_m < 0.75 * shape.spacing_m;
@@ -78,6 +79,8 @@ Status paint(const PaintCommand& command, uint16_t layer, SlopeReader& slopes, P
             return {};
         }));
     }
+    for (const glm::dvec2& center : command.dabs)
+        LOAM_TRY(place_transitions(transitions, dab_footprint(shape, center, command.radius_m).rect, edits));
     return {};
 }
 

@@ -5,10 +5,12 @@
 #include "runtime/document/command.h"
 #include "runtime/document/page_edits.h"
 #include "runtime/document/slope.h"
+#include "runtime/document/transitions.h"
 
 namespace loam {
 
-// `layer`: the index of command.layer, where it is given.
-Status paint(const PaintCommand& command, uint16_t layer, SlopeReader& slopes, PageEdits<IndexTexel>& edits);
+// `layer`: the index of command.layer, where it is given. `transitions`: what is placed where layers meet, if any.
+Status paint(const PaintCommand& command, uint16_t layer, const std::vector<Transition>& transitions,
+             SlopeReader& slopes, PageEdits<IndexTexel>& edits);
 
 }  // namespace loam

@@ -161,11 +161,14 @@ Status Renderer::settings_changed(gpu::FrameRing& ring) {
     Impl& r = *impl_;
     r.changed = true;
     const ProjectSettings& settings = r.document.settings();
-    if (r.layers->names.size() != settings.layers.size()) return r.create_texture(ring);
-    if (r.layers->ground == settings.ground) return {};
-    LOAM_TRY(r.layers->take_ground(ring, settings.ground));
-    r.resolve->take_ground();
-    return r.texture->take_ground();
+    if (!r.layers->has_textures_of(settings)) {
+        r.resolve->take_settings();
+        return r.create_texture(ring);
+    }
+    if (r.layers->ground == settings.ground && r.layers->entries == settings.layers) return {};
+    LOAM_TRY(r.layers->take_settings(ring, settings));
+    r.resolve->take_settings();
+    return r.texture->take_settings();
 }
 
 shared::FrameUniforms Renderer::Impl::uniforms(const Camera& camera, glm::uvec2 size,

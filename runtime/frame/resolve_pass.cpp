@@ -111,7 +111,8 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
                                    : "frame/resolve.frag",
         .push_bytes = sizeof(shared::ResolvePush),
         // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal, 22: decals, 25:
-        // texels, 30, 31: the page's layout and channels, 40: tile hiding, 41: distortion.
+        // texels, 30, 31: the page's layout and channels, 40: tile hiding, 41: distortion,
+        // 42: transitions.
         .constants = {{0, kind == Kind::fast || kind == Kind::floor ? 0u : 1u},
                       {1, kind == Kind::debug ? 1u : 0u},
                       {20, kind == Kind::fast ? 0u : 1u},
@@ -121,7 +122,8 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
                       {30, textures.layout},
                       {31, textures.placement},
                       {40, layers.ground.tile_hiding},
-                      {41, layers.ground.distortion_amplitude_m > 0}},
+                      {41, layers.ground.distortion_amplitude_m > 0},
+                      {42, layers.has_transitions}},
         .color_formats = {kPictureFormat},
         .depth_format = device_->caps().depth_stencil,
         .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
@@ -142,7 +144,7 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
     return &pipeline;
 }
 
-void ResolvePass::take_ground() {
+void ResolvePass::take_settings() {
     for (const Kind kind : {Kind::direct, Kind::direct_decals, Kind::texels, Kind::texels_decals})
         pipelines_[size_t(kind)] = {};
 }

@@ -38,8 +38,8 @@ class ResolvePass {
     static Result<ResolvePass> create(gpu::Device& device, const LayerSet& layers,
                                       const PageTextures& textures);
 
-    // After LayerSet::take_ground: direct shading is another pipeline then.
-    void take_ground();
+    // After LayerSet::take_settings: direct shading is another pipeline then.
+    void take_settings();
     // Reads the prepass' targets, writes the picture (left in Access::color_target).
     Status cmd_record(gpu::Commands& commands, const ResolveInputs& inputs, const FrameSettings& settings,
                       ResolvePart part);

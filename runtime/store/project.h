@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,18 @@ struct LayerEntry {
     std::string name;     // "grass"; unique in a project
     std::string file;     // "layers/grass.layer", relative to the project (layer_file.h)
     double tile_m = 2.0;  // world size of one repeat of its textures
+    // A transition has no textures of its own: it is layer `from` with as much of `to` as a threshold and the reveal map of `to` let
+    // through. Source: Call of Duty talk, "Multi-Layered Terrain Materials".
+    struct Blend {
+        std::string from, to;   // names of layers with textures
+        double threshold = 0.5; // 0: all of `from`, 1: all of `to`
+        // Removed: its number may still stand in the index map, so it keeps its place in the list, shows the side that it was
+        // nearer to, and is taken again by the next transition that is made.
+        bool removed = false;
+        bool operator==(const Blend&) const = default;
+    };
+    std::optional<Blend> blend{};
+    bool operator==(const LayerEntry&) const = default;
 };
 
 // Which layers events use, by name; an empty or unknown name falls back to layer 0.

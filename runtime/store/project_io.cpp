@@ -95,12 +95,37 @@ int64_t whole_of(const toml::node& node, const char* name, int64_t low, int64_t 
 
 LayerEntry layer_of(const toml::node& node) {
     LayerEntry layer;
+    LayerEntry::Blend blend;
+    const toml::node* only_blends = nullptr;
+    const auto read_blend = [&](const toml::node& n) {
+        const auto* pair = n.as_array();
+        if (!pair || pair->size() != 2) refuse(n, "blend must be [from, to], the names of two layers");
+        blend.from = string_of(*pair->get(0), "blend (from)");
+        blend.to = string_of(*pair->get(1), "blend (to)");
+        layer.blend = blend;
+    };
     const toml::table& table = table_of(node, "layer");
     read_table(
         table, "[[layer]]",
         {{"name", [&](const toml::node& n) { layer.name = string_of(n, "name"); }},
          {"file", [&](const toml::node& n) { layer.file = string_of(n, "file"); }},
-         {"tile_m", [&](const toml::node& n) { layer.tile_m = number_of(n, "tile_m", 0.01, 10000); }}});
+         {"tile_m", [&](const toml::node& n) { layer.tile_m = number_of(n, "tile_m", 0.01, 10000); }},
+         {"blend", read_blend},
+         {"threshold",
+          [&](const toml::node& n) {
+              blend.threshold = number_of(n, "threshold", 0, 1);
+              only_blends = &n;
+          }},
+         {"removed", [&](const toml::node& n) {
+              blend.removed = flag_of(n, "removed");
+              only_blends = &n;
+          }}});
+    if (layer.blend) {
+        layer.blend->threshold = blend.threshold;
+        layer.blend->removed = blend.removed;
+    } else if (only_blends) {
+        refuse(*only_blends, "threshold and removed belong to layers with a blend");
+    }
     if (layer.name.empty()) refuse(node, "a layer needs a name");
     return layer;
 }
@@ -224,9 +249,16 @@ std::string text_of(const ProjectSettings& s) {
                        toml_real(s.ground.distortion_amplitude_m));
     out += fmt::format("distortion_period_m = {}\ntile_hiding = {}\n", toml_real(s.ground.distortion_period_m),
                        s.ground.tile_hiding);
-    for (const LayerEntry& layer : s.layers)
-        out += fmt::format("\n[[layer]]\nname = {}\nfile = {}\ntile_m = {}\n", toml_text(layer.name),
-                           toml_text(layer.file), toml_real(layer.tile_m));
+    for (const LayerEntry& layer : s.layers) {
+        out += fmt::format("\n[[layer]]\nname = {}\n", toml_text(layer.name));
+        if (layer.blend) {
+            out += fmt::format("blend = [{}, {}]\nthreshold = {}\n", toml_text(layer.blend->from),
+                               toml_text(layer.blend->to), toml_real(layer.blend->threshold));
+            if (layer.blend->removed) out += "removed = true # its place in the list is kept\n";
+            continue;
+        }
+        out += fmt::format("file = {}\ntile_m = {}\n", toml_text(layer.file), toml_real(layer.tile_m));
+    }
     return out;
 }
 

@@ -1,4 +1,5 @@
 // Rules of project.toml that hold wherever the settings come from.
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -34,6 +35,27 @@ Status check_layer(const LayerEntry& layer, std::set<std::string>& names) {
                      layer.name, layer.file);
     const Status tile = check_number("tile_m", layer.tile_m, 0.01, 10000);
     if (!tile.ok()) return error("layer \"{}\": {}", layer.name, tile.message());
+    return {};
+}
+
+Status check_blends(const std::vector<LayerEntry>& layers) {
+    const auto has_textures = [&](const std::string& name) {
+        return std::any_of(layers.begin(), layers.end(),
+                           [&](const LayerEntry& l) { return l.name == name && !l.blend; });
+    };
+    for (const LayerEntry& layer : layers) {
+        if (!layer.blend) continue;
+        if (!layer.file.empty())
+            return error("layer \"{}\" has a blend and a file; a transition has no textures of its own",
+                         layer.name);
+        for (const std::string& side : {layer.blend->from, layer.blend->to})
+            if (!has_textures(side))
+                return error("transition \"{}\": there is no layer \"{}\" with textures", layer.name, side);
+        if (layer.blend->from == layer.blend->to)
+            return error("transition \"{}\" is from \"{}\" to itself", layer.name, layer.blend->from);
+        if (const Status status = check_number("threshold", layer.blend->threshold, 0, 1); !status.ok())
+            return error("transition \"{}\": {}", layer.name, status.message());
+    }
     return {};
 }
 
@@ -77,6 +99,7 @@ Status check_settings(const ProjectSettings& settings) {
                      settings.layers.size());
     std::set<std::string> names;
     for (const LayerEntry& layer : settings.layers) LOAM_TRY(check_layer(layer, names));
+    LOAM_TRY(check_blends(settings.layers));
     LOAM_TRY(check_ground(settings));
     LOAM_TRY(check_number("azimuth_rad", settings.sun_azimuth_rad, -100, 100));
     LOAM_TRY(check_number("elevation_rad", settings.sun_elevation_rad, -1.5708, 1.5708));

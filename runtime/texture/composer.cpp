@@ -33,6 +33,8 @@ uint32_t encoded_units(const TexelRect& rect, const PageTextures& textures) {
     return units;
 }
 
+constexpr int kOneLayerKind = 1, kTransitionKind = 2;  // bits of a rectangle's kind
+
 // Of a place in something that repeats every period_m: 0 … 1.
 float phase(double at_m, double period_m) {
     const double repeats = at_m / period_m;
@@ -44,13 +46,14 @@ float phase(double at_m, double period_m) {
 struct Composer::Placed {
     ComposeJob job;
     shared::ComposeRect rect{};
-    bool one_layer = false;
+    int kind = 0;  // of materials_
 };
 
-// What the shaders of a batch read: rectangles, and their tiles, those of one layer first.
+// What the shaders of a batch read: rectangles, and their tiles, kind after kind.
 struct Composer::Work {
     gpu::UploadSlice rects, tiles;
-    uint32_t tile_count = 0, one_layer_tiles = 0;
+    uint32_t tile_count = 0;
+    std::array<uint32_t, 4> kind_tiles{};
 };
 
 Composer::Composer(gpu::Device& device, const Document& document, IndexMap& index, LayerSet& layers,
@@ -88,7 +91,7 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     if (!nearest.ok()) return nearest.error();
     composer->nearest_ = std::move(*nearest);
 
-    LOAM_TRY(composer->take_ground());
+    LOAM_TRY(composer->take_settings());
     for (int mip = textures.first_encoded_mip; mip < 2; ++mip) {
         const bool blocks = is_compressed(textures.format);
         auto encode = gpu::Pipeline::create(
@@ -127,32 +130,35 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     return composer;
 }
 
-Result<gpu::Pipeline> Composer::material_pipeline(bool one_layer) const {
+Result<gpu::Pipeline> Composer::material_pipeline(bool one_layer, bool transitions) const {
     return gpu::Pipeline::create(
-        device_, gpu::ComputeDesc{
-                     .name = one_layer ? "compose, one layer" : "compose",
-                     .shader = "texture/compose.comp",
-                     .bindings = {gpu::sampled_image(0), gpu::sampled_image(1), gpu::sampled_image(2),
-                                  gpu::sampled_image(3), gpu::sampled_image(4), gpu::storage_buffer(5),
-                                  gpu::storage_image(6), gpu::storage_buffer(7), gpu::storage_buffer(8),
-                                  gpu::sampled_image(9)},
-                     .push_bytes = sizeof(shared::ComposePush),
-                     .constants = {{0, one_layer},
-                                   {1, layers_.has_metal},
-                                   {2, layers_.ground.tile_hiding},
-                                   {3, bool(layers_.distortion)}}});
+        device_,
+        gpu::ComputeDesc{.name = one_layer ? "compose, one layer" : "compose",
+                         .shader = "texture/compose.comp",
+                         .bindings = {gpu::sampled_image(0), gpu::sampled_image(1), gpu::sampled_image(2),
+                                      gpu::sampled_image(3), gpu::sampled_image(4), gpu::storage_buffer(5),
+                                      gpu::storage_image(6), gpu::storage_buffer(7), gpu::storage_buffer(8),
+                                      gpu::sampled_image(9)},
+                         .push_bytes = sizeof(shared::ComposePush),
+                         .constants = {{0, one_layer},
+                                       {1, layers_.has_metal},
+                                       {2, layers_.ground.tile_hiding},
+                                       {3, bool(layers_.distortion)},
+                                       {4, transitions}}});
 }
 
-Status Composer::take_ground() {
-    const std::array<bool, 2> features{layers_.ground.tile_hiding, bool(layers_.distortion)};
-    if (general_ && features == features_) return {};
-    auto one = material_pipeline(true);
-    if (!one.ok()) return one.error();
-    auto general = material_pipeline(false);
-    if (!general.ok()) return general.error();
-    one_layer_ = std::move(*one);
-    general_ = std::move(*general);
+Status Composer::take_settings() {
+    const std::array<bool, 3> features{layers_.ground.tile_hiding, bool(layers_.distortion),
+                                       layers_.has_transitions};
+    if (materials_[0] && features == features_) return {};
     features_ = features;
+    for (size_t kind = 0; kind < materials_.size(); ++kind) {
+        materials_[kind] = {};
+        if (kind >= kTransitionKind && !layers_.has_transitions) continue;
+        auto made = material_pipeline(kind & kOneLayerKind, kind & kTransitionKind);
+        if (!made.ok()) return made.error();
+        materials_[kind] = std::move(*made);
+    }
     return {};
 }
 
@@ -160,7 +166,11 @@ shared::LayerPlace Composer::layer_place(double origin_x_m, double origin_y_m, d
                                          double tile_m, int layer_texels) {
     return {{phase(origin_x_m, tile_m), phase(origin_y_m, tile_m)},
             float(side_m / tile_m),
-            float(std::log2(texel_m * layer_texels / tile_m))};
+            float(std::log2(texel_m * layer_texels / tile_m)),
+            0,
+            0,
+            0,
+            0};
 }
 
 // Where the page lies in its index page, and whether the rectangle holds one layer only.
@@ -172,19 +182,20 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
     const glm::dvec2 origin((square.min_x - index_square.min_x) / spacing_m + kIndexBorder,
                             (square.min_y - index_square.min_y) / spacing_m + kIndexBorder);
     const double scale = layout_.page_side_m(job.page) / spacing_m;
-    placed.rect = {.rect_min = {job.rect.x0, job.rect.y0},
-                   .rect_size = {job.rect.width(), job.rect.height()},
-                   .scratch_min = scratch_min,
-                   .index_origin = glm::vec2(origin),
-                   .index_scale = float(scale),
-                   .index_slot = uint32_t(job.index_slot),
-                   .index_vertex = glm::ivec2(job.index_page.x, job.index_page.y) * kIndexPayload - kIndexBorder,
-                   .index_level = job.index_page.level,
-                   .first_place = 0,
-                   .layer = 0,
-                   .last_layer = uint32_t(layers_.count - 1),
-                   .first_unit = 0,
-                   .units = encoded_units(job.rect, textures_)};
+    placed.rect = {
+        .rect_min = {job.rect.x0, job.rect.y0},
+        .rect_size = {job.rect.width(), job.rect.height()},
+        .scratch_min = scratch_min,
+        .index_origin = glm::vec2(origin),
+        .index_scale = float(scale),
+        .index_slot = uint32_t(job.index_slot),
+        .index_vertex = glm::ivec2(job.index_page.x, job.index_page.y) * kIndexPayload - kIndexBorder,
+        .index_level = job.index_page.level,
+        .first_place = 0,
+        .layer = 0,
+        .last_layer = uint32_t(layers_.count - 1),
+        .first_unit = 0,
+        .units = encoded_units(job.rect, textures_)};
 
     const GroundSettings& ground = layers_.ground;
     const double reach = ground.distortion_amplitude_m / spacing_m;
@@ -212,14 +223,21 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
     const IndexTexel* texels = index_.resident_page(job.index_page);
     LOAM_CHECK(texels, "a page is composed from a resident index page only");
     const auto layer_at = [&](int x, int y) {
-        const uint32_t layer = std::min<uint32_t>(texels[size_t(y * kIndexTexels + x)].layer, placed.rect.last_layer);
+        const uint32_t layer =
+            std::min<uint32_t>(texels[size_t(y * kIndexTexels + x)].layer, placed.rect.last_layer);
         const glm::ivec2 vertex = placed.rect.index_vertex + glm::ivec2(x, y);
-        return ground.tile_hiding ? shared::tile_key(layer, vertex.x, vertex.y, placed.rect.index_level) : layer;
+        return ground.tile_hiding ? shared::tile_key(layer, vertex.x, vertex.y, placed.rect.index_level)
+                                  : layer;
     };
     placed.rect.layer = layer_at(seen.x0, seen.y0);
-    placed.one_layer = true;
-    for (int y = seen.y0; y < seen.y1 && placed.one_layer; ++y)
-        for (int x = seen.x0; x < seen.x1; ++x) placed.one_layer &= layer_at(x, y) == placed.rect.layer;
+    bool one_layer = true, transitions = false;
+    for (int y = seen.y0; y < seen.y1 && (one_layer || layers_.has_transitions); ++y)
+        for (int x = seen.x0; x < seen.x1; ++x) {
+            const uint32_t layer = layer_at(x, y);
+            one_layer &= layer == placed.rect.layer;
+            transitions |= layers_.is_transition(ground.tile_hiding ? layer >> kKeyLayerShift : layer);
+        }
+    placed.kind = (one_layer ? kOneLayerKind : 0) | (transitions ? kTransitionKind : 0);
     return placed;
 }
 
@@ -269,16 +287,16 @@ Composer::Work Composer::upload(gpu::FrameRing& ring, std::span<Placed> batch) {
         units += rect.units * uint32_t(textures_.count);
         const uint32_t tiles = uint32_t(batch[i].job.rect.area() / (kTileTexels * kTileTexels));
         work.tile_count += tiles;
-        if (batch[i].one_layer) work.one_layer_tiles += tiles;
+        work.kind_tiles[size_t(batch[i].kind)] += tiles;
     }
     work.rects = ring.upload(batch.size() * sizeof(shared::ComposeRect));
     work.tiles = ring.upload(work.tile_count * sizeof(uint32_t));
     auto* rects = work.rects.as<shared::ComposeRect>();
     auto* tiles = work.tiles.as<uint32_t>();
     for (size_t i = 0; i < batch.size(); ++i) rects[i] = batch[i].rect;
-    for (const bool one_layer : {true, false})
+    for (int kind = 0; kind < int(work.kind_tiles.size()); ++kind)
         for (size_t i = 0; i < batch.size(); ++i) {
-            if (batch[i].one_layer != one_layer) continue;
+            if (batch[i].kind != kind) continue;
             const glm::ivec2 size = batch[i].rect.rect_size / kTileTexels;
             for (int y = 0; y < size.y; ++y)
                 for (int x = 0; x < size.x; ++x)
@@ -295,9 +313,11 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
     for (const Placed& placed : batch) {
         const PageId& page = placed.job.page;
         const WorldRect square = layout_.square(page);
-        for (size_t layer = 0; layer < layer_count; ++layer)
-            *out++ = layer_place(square.min_x, square.min_y, layout_.page_side_m(page), layout_.texel_m(page),
-                                 layers_.tiles_m[layer], layers_.size_texels);
+        for (size_t layer = 0; layer < layer_count; ++layer, ++out) {
+            *out = layer_place(square.min_x, square.min_y, layout_.page_side_m(page), layout_.texel_m(page),
+                               layers_.tiles_m[layer], layers_.size_texels);
+            layers_.fill_place(int(layer), *out);
+        }
     }
     auto pass = commands.pass("texture compose", {{scratch_, Access::compute_storage},
                                                   {layers_.albedo_reveal, Access::compute_sampled},
@@ -306,10 +326,11 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
                                                   {index_.indices(), Access::compute_sampled},
                                                   {index_.tints(), Access::compute_sampled},
                                                   {layers_.distortion_map(), Access::compute_sampled}});
-    for (const bool one_layer : {true, false}) {
-        const uint32_t tiles = one_layer ? work.one_layer_tiles : work.tile_count - work.one_layer_tiles;
+    uint32_t first_tile = 0;
+    for (size_t kind = 0; kind < work.kind_tiles.size(); first_tile += work.kind_tiles[kind++]) {
+        const uint32_t tiles = work.kind_tiles[kind];
         if (tiles == 0) continue;
-        const gpu::Pipeline& pipeline = one_layer ? one_layer_ : general_;
+        const gpu::Pipeline& pipeline = materials_[kind];
         commands.bind(pipeline, {{0, layers_.albedo_reveal.view(), layers_.sampler},
                                  {1, layers_.normal_gloss_occlusion.view(), layers_.sampler},
                                  {2, layers_.metalness.view(), layers_.sampler},
@@ -320,7 +341,7 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
                                  {7, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
                                  {8, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes},
                                  {9, layers_.distortion_map().view(), layers_.sampler}});
-        commands.push(pipeline, shared::ComposePush{one_layer ? 0 : work.one_layer_tiles});
+        commands.push(pipeline, shared::ComposePush{first_tile});
         commands.dispatch(tiles);
     }
 }

@@ -35,8 +35,8 @@ class Composer {
                                                     IndexMap& index, LayerSet& layers,
                                                     const TextureLayout& layout, const PageTextures& textures,
                                                     bool decals);
-    // After LayerSet::take_ground: the pipelines for what is on now.
-    Status take_ground();
+    // After LayerSet::take_settings: the pipelines for what is on now.
+    Status take_settings();
     Status cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const ComposeJob> jobs,
                        PageAtlas& atlas);
 
@@ -56,7 +56,7 @@ class Composer {
     struct Work;
     Composer(gpu::Device& device, const Document& document, IndexMap& index, LayerSet& layers,
              const TextureLayout& layout, const PageTextures& textures);
-    [[nodiscard]] Result<gpu::Pipeline> material_pipeline(bool one_layer) const;
+    [[nodiscard]] Result<gpu::Pipeline> material_pipeline(bool one_layer, bool transitions) const;
     [[nodiscard]] Placed prepare(const ComposeJob& job, glm::ivec2 scratch_min);
     Status cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch,
                      PageAtlas& atlas);
@@ -76,9 +76,11 @@ class Composer {
     gpu::Image scratch_;  // see shaders/texture/page_format.h
     gpu::Buffer encoded_;
     gpu::Sampler nearest_;
-    gpu::Pipeline one_layer_, general_, encode_[2], crater_, footprint_;
+    // By one layer only (1) and transitions (2): a rectangle runs the one for what is in it.
+    std::array<gpu::Pipeline, 4> materials_;
+    gpu::Pipeline encode_[2], crater_, footprint_;
     bool decals_ = false;
-    std::array<bool, 2> features_{};  // tile hiding, distortion: of the pipelines
+    std::array<bool, 3> features_{};  // tile hiding, distortion, transitions: of the pipelines
 };
 
 }  // namespace loam

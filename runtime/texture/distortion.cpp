@@ -21,7 +21,8 @@ double periodic_noise(double x, double y, int cells, uint32_t seed) {
     const int i = int(std::floor(at_x)), j = int(std::floor(at_y));
     const auto ease = [](double t) { return t * t * t * (t * (t * 6 - 15) + 10); };
     const auto corner = [&](int a, int b) {
-        return double(shared::noise_share(shared::noise_cell((i + a) % cells, (j + b) % cells, seed))) * 2 - 1;
+        return double(shared::noise_share(shared::noise_cell((i + a) % cells, (j + b) % cells, seed))) * 2 -
+               1;
     };
     const double u = ease(at_x - i), v = ease(at_y - j);
     return std::lerp(std::lerp(corner(0, 0), corner(1, 0), u), std::lerp(corner(0, 1), corner(1, 1), u), v);
@@ -59,7 +60,8 @@ std::vector<std::vector<glm::u16vec2>> make_distortion() {
         for (int y = 0; y < half; ++y)
             for (int x = 0; x < half; ++x)
                 for (int k = 0; k < 4; ++k)
-                    next[size_t(y * half + x)] += 0.25 * texels[size_t((2 * y + k / 2) * side + 2 * x + k % 2)];
+                    next[size_t(y * half + x)] +=
+                        0.25 * texels[size_t((2 * y + k / 2) * side + 2 * x + k % 2)];
         texels = std::move(next);
     }
 }

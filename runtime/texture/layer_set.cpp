@@ -14,7 +14,7 @@
 #include "runtime/document/document.h"
 #include "runtime/store/layer_file.h"
 #include "runtime/texture/distortion.h"
-#include "shaders/texture/compose_io.h"
+#include "shaders/texture/ompv.h"
 
 namespace loam {
 
@@ -38,27 +38,37 @@ LayerTextures flat_grey() {
     return t;
 }
 
-Result<std::vector<LayerTextures>> load_all(const Document& document) {
-    const auto& entries = document.settings().layers;
-    std::vector<LayerTextures> loaded(entries.size());
-    std::vector<std::string> failures(entries.size());
-    parallel_ranges(int(entries.size()), 1, [&](int begin, int end) {
+// The files that layers name, each once, in the list's order.
+std::vector<std::string> files_of(const std::vector<LayerEntry>& entries) {
+    std::vector<std::string> files;
+    for (const LayerEntry& entry : entries)
+        if (!entry.blend && std::find(files.begin(), files.end(), entry.file) == files.end())
+            files.push_back(entry.file);
+    return files;
+}
+
+Result<std::vector<LayerTextures>> load_all(const Document& document, const std::vector<std::string>& files) {
+    std::vector<LayerTextures> loaded(files.size());
+    std::vector<std::string> failures(files.size());
+    parallel_ranges(int(files.size()), 1, [&](int begin, int end) {
         for (int i = begin; i < end; ++i) {
-            auto layer = load_layer(document.folder() / entries[size_t(i)].file);
+            auto layer = load_layer(document.folder() / files[size_t(i)]);
             if (layer.ok())
                 loaded[size_t(i)] = std::move(*layer);
             else
                 failures[size_t(i)] = layer.message();
         }
     });
-    for (size_t i = 0; i < entries.size(); ++i)
+    for (size_t i = 0; i < files.size(); ++i)
         if (!failures[i].empty())
-            return error("cannot load layer \"{}\" from {}: {}", entries[i].name,
-                         (document.folder() / entries[i].file).string(), failures[i]);
+            for (const LayerEntry& entry : document.settings().layers)
+                if (!entry.blend && entry.file == files[i])
+                    return error("cannot load layer \"{}\" from {}: {}", entry.name,
+                                 (document.folder() / files[i]).string(), failures[i]);
     return loaded;
 }
 
-// Row 0 north; nearest texel of the mip that is just large enough.
+// Row 0 north; nearest texel of the mip that is just large enough; alpha is the reveal map.
 std::vector<uint8_t> make_thumbnail(const LayerTextures& layer) {
     size_t mip = 0;
     int size = layer.size_texels;
@@ -68,7 +78,7 @@ std::vector<uint8_t> make_thumbnail(const LayerTextures& layer) {
         for (int x = 0; x < kThumbnail; ++x) {
             const size_t from = size_t((kThumbnail - 1 - y) * size / kThumbnail) * size_t(size) +
                                 size_t(x * size / kThumbnail);
-            std::memcpy(&out[size_t(y * kThumbnail + x) * 4], &layer.albedo_reveal[mip][from * 4], 3);
+            std::memcpy(&out[size_t(y * kThumbnail + x) * 4], &layer.albedo_reveal[mip][from * 4], 4);
         }
     return out;
 }
@@ -104,25 +114,17 @@ struct Target {
 Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const Document& document) {
     auto set = std::make_unique<LayerSet>();
     gpu::Device& device = ring.device();
-    auto loaded = load_all(document);
+    const std::vector<std::string> files = files_of(document.settings().layers);
+    auto loaded = load_all(document, files);
     if (!loaded.ok()) return loaded.error();
     std::vector<LayerTextures> layers = std::move(*loaded);
-    std::vector<double> tiles_m;
-    for (const LayerEntry& entry : document.settings().layers) {
-        set->names.push_back(entry.name);
-        tiles_m.push_back(entry.tile_m);
-    }
-    if (layers.empty()) {
-        layers.push_back(flat_grey());
-        set->names.push_back("grey");
-        tiles_m.push_back(2.0);
-    }
-    set->count = int(layers.size());
+    if (layers.empty()) layers.push_back(flat_grey());
+    const int slot_count = int(layers.size());
     int size = 1;
-    for (const LayerTextures& l : layers) {
-        size = std::max(size, l.size_texels);
-        set->has_metal |= l.has_metal;
-        set->thumbnails.push_back(make_thumbnail(l));
+    for (size_t i = 0; i < layers.size(); ++i) {
+        size = std::max(size, layers[i].size_texels);
+        set->has_metal |= layers[i].has_metal;
+        set->slots_.push_back({i < files.size() ? files[i] : "", 1, make_thumbnail(layers[i])});
     }
     size = std::min(size, kMaxLayerTexels);
     set->size_texels = size;
@@ -136,7 +138,7 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
                                    .width = uint32_t(side),
                                    .height = uint32_t(side),
                                    .mip_count = mips,
-                                   .layer_count = uint32_t(set->count),
+                                   .layer_count = uint32_t(slot_count),
                                    .array_view = true,
                                    .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
     };
@@ -170,38 +172,25 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
     for (Target& t : targets) {
         t.offset = total;
         for (uint32_t mip = 0; mip < t.image->mip_count(); ++mip)
-            total += (mip_bytes(t, mip) * uint64_t(set->count) + 15) / 16 * 16;
+            total += (mip_bytes(t, mip) * uint64_t(slot_count) + 15) / 16 * 16;
     }
-    std::vector<shared::LayerParams> params(size_t(set->count));
-    for (size_t i = 0; i < params.size(); ++i) {
-        // A repeated layer's tile grows with it; log2(texels a metre) is what mip choice needs.
-        const double repeats = std::max(1.0, double(size) / layers[i].size_texels);
-        const double tile_m = tiles_m[i] * repeats;
-        set->tiles_m.push_back(tile_m);
-        params[i] = {float(1.0 / tile_m), float(std::log2(size / tile_m)), 0, 0};
-    }
-    const uint64_t params_offset = total;
-    const uint64_t params_bytes = params.size() * sizeof(shared::LayerParams);
+    // A repeated layer's tile grows with it.
+    for (size_t i = 0; i < layers.size(); ++i)
+        set->slots_[i].repeats = std::max(1.0, double(size) / layers[i].size_texels);
     auto staging = gpu::Buffer::create(device, {.name = "layer staging",
-                                                .size_bytes = total + params_bytes,
+                                                .size_bytes = total,
                                                 .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
                                                 .memory = gpu::MemoryUse::upload});
     if (!staging.ok()) return staging.error();
-    auto parameters = gpu::Buffer::create(device, {.name = "layer parameters",
-                                                   .size_bytes = params_bytes,
-                                                   .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-    if (!parameters.ok()) return parameters.error();
-    set->parameters = std::move(*parameters);
     uint8_t* bytes = staging->as<uint8_t>();
-    std::memcpy(bytes + params_offset, params.data(), params_bytes);
-    parallel_ranges(set->count, 1, [&](int begin, int end) {
+    parallel_ranges(slot_count, 1, [&](int begin, int end) {
         for (int layer = begin; layer < end; ++layer)
             for (const Target& t : targets) {
                 uint64_t at = t.offset;
                 for (uint32_t mip = 0; mip < t.image->mip_count(); ++mip) {
                     fill_mip(*t.layers[size_t(layer)], layers[size_t(layer)].size_texels, t.size, int(mip),
                              t.texel_bytes, bytes + at + mip_bytes(t, mip) * uint64_t(layer));
-                    at += (mip_bytes(t, mip) * uint64_t(set->count) + 15) / 16 * 16;
+                    at += (mip_bytes(t, mip) * uint64_t(slot_count) + 15) / 16 * 16;
                 }
             }
     });
@@ -217,8 +206,7 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
     gpu::Commands& commands = (*frame)->commands;
     commands.use({{set->albedo_reveal, gpu::Access::copy_target},
                   {set->normal_gloss_occlusion, gpu::Access::copy_target},
-                  {set->metalness, gpu::Access::copy_target},
-                  {set->parameters, gpu::Access::copy_target}});
+                  {set->metalness, gpu::Access::copy_target}});
     for (const Target& t : targets) {
         std::vector<VkBufferImageCopy> regions;
         uint64_t at = t.offset;
@@ -227,23 +215,90 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
             regions.push_back({.bufferOffset = at,
                                .bufferRowLength = 0,
                                .bufferImageHeight = 0,
-                               .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, uint32_t(set->count)},
+                               .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, uint32_t(slot_count)},
                                .imageOffset = {},
                                .imageExtent = {side, side, 1}});
-            at += (mip_bytes(t, mip) * uint64_t(set->count) + 15) / 16 * 16;
+            at += (mip_bytes(t, mip) * uint64_t(slot_count) + 15) / 16 * 16;
         }
         vkCmdCopyBufferToImage(commands.handle(), staging->handle(), t.image->handle(),
                                VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(regions.size()),
                                regions.data());
     }
-    const VkBufferCopy region{params_offset, 0, params_bytes};
-    vkCmdCopyBuffer(commands.handle(), staging->handle(), set->parameters.handle(), 1, &region);
     if (auto done = ring.finish(**frame); !done.ok()) return done.error();
-    LOAM_TRY(set->take_ground(ring, document.settings().ground));
+    LOAM_TRY(set->take_settings(ring, document.settings()));
     return set;
 }
 
-Status LayerSet::take_ground(gpu::FrameRing& ring, const GroundSettings& settings) {
+bool LayerSet::has_textures_of(const ProjectSettings& settings) const {
+    std::vector<std::string> files = files_of(settings.layers);
+    if (files.empty()) files.emplace_back();
+    return std::equal(files.begin(), files.end(), slots_.begin(), slots_.end(),
+                      [](const std::string& file, const Slot& slot) { return file == slot.file; });
+}
+
+void LayerSet::fill_place(int layer, shared::LayerPlace& place) const {
+    const Source& source = blends_[size_t(layer)];
+    place.slot = source.slot;
+    place.first = source.first;
+    place.second = source.second;
+    place.threshold = source.threshold;
+}
+
+// A transition's picture is what its threshold makes of its layers' pictures.
+void LayerSet::make_thumbnails() {
+    thumbnails.clear();
+    for (const Source& source : blends_) {
+        std::vector<uint8_t> picture = slots_[blends_[source.first].slot].thumbnail;
+        const std::vector<uint8_t>& over = slots_[blends_[source.second].slot].thumbnail;
+        for (size_t i = 0; i < picture.size(); i += 4) {
+            const float cover = source.first == source.second
+                                    ? 0.0f
+                                    : shared::ompv_cover(source.threshold, float(over[i + 3]) / 255.0f);
+            for (size_t c = 0; c < 3; ++c)
+                picture[i + c] = uint8_t(std::lerp(float(picture[i + c]), float(over[i + c]), cover) + 0.5f);
+            picture[i + 3] = 255;
+        }
+        thumbnails.push_back(std::move(picture));
+    }
+}
+
+Status LayerSet::take_settings(gpu::FrameRing& ring, const ProjectSettings& project) {
+    LOAM_CHECK(has_textures_of(project), "other layer files need another LayerSet");
+    std::vector<LayerEntry> list = project.layers;
+    if (list.empty()) list.push_back({.name = "grey"});
+    const auto number_of = [&](const std::string& name) {
+        return uint32_t(
+            std::find_if(list.begin(), list.end(), [&](const LayerEntry& l) { return l.name == name; }) -
+            list.begin());
+    };
+    entries = project.layers;
+    count = int(list.size());
+    names.clear();
+    tiles_m.clear();
+    blends_.clear();
+    has_transitions = false;
+    for (uint32_t i = 0; i < list.size(); ++i) {
+        const LayerEntry& entry = list[i];
+        names.push_back(entry.name);
+        Source source{.first = i, .second = i};
+        if (entry.blend) {
+            source.first = number_of(entry.blend->from);
+            source.second = number_of(entry.blend->to);
+            source.threshold = float(entry.blend->threshold);
+            if (entry.blend->removed)
+                source.first = source.second = source.threshold < 0.5f ? source.first : source.second;
+            has_transitions = true;
+        } else {
+            source.slot = uint32_t(std::find_if(slots_.begin(), slots_.end(),
+                                                [&](const Slot& s) { return s.file == entry.file; }) -
+                                   slots_.begin());
+        }
+        tiles_m.push_back(entry.tile_m * slots_[source.slot].repeats);
+        blends_.push_back(source);
+    }
+    make_thumbnails();
+
+    const GroundSettings& settings = project.ground;
     ground = settings;
     const bool wanted = settings.distortion_amplitude_m > 0;
     if (!wanted) distortion = {};

@@ -54,8 +54,7 @@ Status VirtualTexture::Impl::make_resources() {
     }
     LOAM_TRY(
         assign(t.direct_params, storage_buffer(t.device, "direct params", sizeof(shared::DirectParams))));
-    LOAM_TRY(assign(t.direct_places, storage_buffer(t.device, "direct places",
-                                                    size_t(t.layers.count) * sizeof(shared::LayerPlace))));
+    LOAM_TRY(t.make_direct_places());
     LOAM_TRY(assign(t.linear, gpu::Sampler::create(t.device, {})));
     LOAM_TRY(assign(t.nearest, gpu::Sampler::create(t.device, {.filter = VK_FILTER_NEAREST})));
     LOAM_TRY(assign(t.fill_pipeline,
@@ -74,6 +73,12 @@ Status VirtualTexture::Impl::make_resources() {
                                                               gpu::sampled_image(6)},
                                                  .push_bytes = sizeof(shared::FeedbackPush),
                                                  .constants = {}}));
+}
+
+Status VirtualTexture::Impl::make_direct_places() {
+    const uint64_t bytes = uint64_t(layers.count) * sizeof(shared::LayerPlace);
+    if (direct_places && direct_places.size_bytes() >= bytes) return {};
+    return assign(direct_places, storage_buffer(device, "direct places", bytes));
 }
 
 Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& device, const Document& document,
@@ -185,18 +190,21 @@ void VirtualTexture::Impl::cmd_direct(gpu::Commands& commands, const TextureView
     for (int level = 0; level < d.level_count; ++level)
         d.levels[level] = {int(map.level_offset(level)), map.pages_x(level), map.pages_y(level), 0};
     std::vector<shared::LayerPlace> places;
-    for (const double tile_m : layers.tiles_m)
+    for (int layer = 0; layer < layers.count; ++layer) {
         places.push_back(Composer::layer_place(camera.sector.x * kSectorSize_m,
-                                               camera.sector.y * kSectorSize_m, 1.0, 1.0, tile_m,
-                                               layers.size_texels));
+                                               camera.sector.y * kSectorSize_m, 1.0, 1.0,
+                                               layers.tiles_m[size_t(layer)], layers.size_texels));
+        layers.fill_place(layer, places.back());
+    }
     commands.use({{direct_params, Access::copy_target}, {direct_places, Access::copy_target}});
     vkCmdUpdateBuffer(commands.handle(), direct_params.handle(), 0, sizeof d, &d);
     vkCmdUpdateBuffer(commands.handle(), direct_places.handle(), 0, places.size() * sizeof places[0],
                       places.data());
 }
 
-Status VirtualTexture::take_ground() {
-    LOAM_TRY(impl_->composer->take_ground());
+Status VirtualTexture::take_settings() {
+    LOAM_TRY(impl_->composer->take_settings());
+    LOAM_TRY(impl_->make_direct_places());
     constexpr double kEverywhere_m = 1.0e6;
     const WorldRect everywhere{-kEverywhere_m, -kEverywhere_m, kEverywhere_m, kEverywhere_m};
     on_dirt({&everywhere, 1});

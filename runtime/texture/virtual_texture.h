@@ -85,8 +85,8 @@ class VirtualTexture {
     void on_dirt(std::span<const WorldRect> rects);
     // Index dirt as the document tells it: grows it and calls on_dirt.
     void on_index_dirt(std::span<const WorldRect> rects);
-    // After LayerSet::take_ground: every page is composed again.
-    Status take_ground();
+    // After LayerSet::take_settings: every page is composed again.
+    Status take_settings();
     // Pages wanted beside the feedback's, until the next call (tests, benches).
     void request_pages(std::span<const PageId> pages);
     // Sectors farther than this from every eye are not live.

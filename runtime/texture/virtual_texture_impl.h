@@ -97,6 +97,7 @@ struct VirtualTexture::Impl {
 
     // virtual_texture.cpp
     Status make_resources();
+    Status make_direct_places();  // as many as there are layers
     void cmd_indirection(gpu::FrameRing& ring, gpu::Commands& commands);
     void cmd_eye(gpu::Commands& commands, const TextureView& view, EyeState& eye, const glm::dvec3& at_m);
     void cmd_direct(gpu::Commands& commands, const TextureView& view);

@@ -8,19 +8,16 @@ LOAM_BEGIN_SHARED
 #define kScratchWidth 1024
 #define kScratchHeight 512
 
-// A layer's constants.
-struct LayerParams {
-    float inv_tile_m;  // repeats a metre
-    float lod_bias;    // log2 of texels a metre of mip 0
-    float unused0, unused1;
-};
-
 // How a layer lies under a position: uv = offset + position * scale, lod = lod_bias + log2 of the texel's size. For a
 // page, the position is 0…1 across its payload; the offset is the page's corner modulo the tile, from doubles.
 struct LayerPlace {
     vec2 offset;
     float scale;
     float lod_bias;
+    uint slot;       // of the layer's textures in their arrays
+    uint first;      // the layer itself; of a transition: from
+    uint second;     // the layer itself; of a transition: to
+    float threshold; // of a transition
 };
 
 // A rectangle of a page to be composed and encoded.

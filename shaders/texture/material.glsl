@@ -5,7 +5,8 @@
 //   MATERIAL_ALBEDO, MATERIAL_NORMAL, MATERIAL_METAL   names of the layers' sampler2DArrays (layer_set.h)
 //   MATERIAL_DISTORTION                                the distortion map, a sampler2DArray (any one where kDistortion is false)
 //   MATERIAL_PLACE(layer)                              the LayerPlace of a layer
-//   kOneLayer, kHasMetal, kTileHiding, kDistortion     constants (specialisation or not)
+//   kOneLayer, kHasMetal, kTileHiding, kDistortion,
+//   kTransitions                                       constants (specialisation or not)
 #ifndef LOAM_TEXTURE_MATERIAL_GLSL
 #define LOAM_TEXTURE_MATERIAL_GLSL
 #include "shaders/texture/compose_io.h"
@@ -44,6 +45,57 @@ vec2 distortion_at(vec2 at, float lod) {
     return textureLod(MATERIAL_DISTORTION, vec3(at, 0.0), max(floor(lod + 0.5), 0.0)).xy;
 }
 
+struct LayerSample {
+    vec4 albedo_reveal;
+    vec4 surface; // normal x, normal y, gloss, occlusion as stored
+    float metalness;
+};
+
+// One layer's textures; key: the corner's, which says how they are turned.
+LayerSample sample_textures(MaterialCorners c, uint key, LayerPlace place) {
+    precise vec2 at = place.offset + c.position * place.scale;
+    vec2 turn = vec2(1, 0);
+    if (kTileHiding) {
+        SectionPlace section = section_place(key, c.vertex, c.level);
+        turn = kTurns[key >> 2u & 15u];
+        precise vec2 from_middle = (c.from_vertex - section.middle) * (c.index_step * place.scale);
+        precise vec2 turned =
+            vec2(turn.x * from_middle.x - turn.y * from_middle.y, turn.y * from_middle.x + turn.x * from_middle.y);
+        at = turned + section.shift;
+    }
+    vec3 uv = vec3(at, float(place.slot));
+    float lod = max(floor(place.lod_bias + c.log2_texel + 0.5), 0.0);
+    LayerSample s = LayerSample(textureLod(MATERIAL_ALBEDO, uv, lod), textureLod(MATERIAL_NORMAL, uv, lod), 0.0);
+    if (kHasMetal) s.metalness = textureLod(MATERIAL_METAL, uv, lod).r;
+    if (kTileHiding) { // what is turned one way to be looked up is seen turned the other way
+        precise vec2 n = s.surface.xy - 128.0 / 255.0;
+        precise vec2 seen = vec2(turn.x * n.x + turn.y * n.y, turn.x * n.y - turn.y * n.x);
+        s.surface.xy = seen + 128.0 / 255.0;
+    }
+    return s;
+}
+
+// A layer or a transition: layer `first`, and over it as much of `second` as the threshold and its reveal map let through.
+LayerSample sample_layer(MaterialCorners c, uint key, uint layer) {
+    LayerPlace place = MATERIAL_PLACE(layer);
+    if (!kTransitions) return sample_textures(c, key, place);
+    LayerSample shown = LayerSample(vec4(0), vec4(0), 0.0);
+    float cover = 1.0;
+    uint source = place.first;
+    // A loop for the reason that evaluate_material has one: neighbours without a transition end it after one pass.
+    for (int side = 0; side < 2; ++side) {
+        LayerSample s = sample_textures(c, key, MATERIAL_PLACE(source));
+        if (side == 1) cover = ompv_cover(place.threshold, s.albedo_reveal.a);
+        precise vec4 albedo_reveal = shown.albedo_reveal * (1.0 - cover) + s.albedo_reveal * cover;
+        precise vec4 surface = shown.surface * (1.0 - cover) + s.surface * cover;
+        precise float metalness = shown.metalness * (1.0 - cover) + s.metalness * cover;
+        shown = LayerSample(albedo_reveal, surface, metalness);
+        if (place.second == source) break;
+        source = place.second;
+    }
+    return shown;
+}
+
 MaterialSample evaluate_material(MaterialCorners c) {
     uvec4 keys = c.layers;
     if (kTileHiding && !kOneLayer)
@@ -65,35 +117,14 @@ MaterialSample evaluate_material(MaterialCorners c) {
         vec4 share = kOneLayer ? weights : ompv_share(keys, weights, key);
         vec3 tint = ompv_decode_tint(ompv_tint(share, c.t0, c.t1, c.t2, c.t3));
 
-        uint layer = kTileHiding ? key >> kKeyLayerShift : key;
-        LayerPlace place = MATERIAL_PLACE(layer);
-        precise vec2 at = place.offset + c.position * place.scale;
-        vec2 turn = vec2(1, 0);
-        if (kTileHiding) {
-            SectionPlace section = section_place(key, c.vertex, c.level);
-            turn = kTurns[key >> 2u & 15u];
-            precise vec2 from_middle = (c.from_vertex - section.middle) * (c.index_step * place.scale);
-            precise vec2 turned = vec2(turn.x * from_middle.x - turn.y * from_middle.y,
-                                       turn.y * from_middle.x + turn.x * from_middle.y);
-            at = turned + section.shift;
-        }
-        vec3 uv = vec3(at, float(layer));
-        float lod = max(floor(place.lod_bias + c.log2_texel + 0.5), 0.0);
-        vec4 albedo_reveal = textureLod(MATERIAL_ALBEDO, uv, lod);
-        vec4 layer_surface = textureLod(MATERIAL_NORMAL, uv, lod);
-        if (kTileHiding) { // what is turned one way to be looked up is seen turned the other way
-            precise vec2 n = layer_surface.xy - 128.0 / 255.0;
-            precise vec2 seen = vec2(turn.x * n.x + turn.y * n.y, turn.x * n.y - turn.y * n.x);
-            layer_surface.xy = seen + 128.0 / 255.0;
-        }
-
-        float cover = visit == 0 ? 1.0 : ompv_cover(ompv_alpha(ompv_sum(share)), albedo_reveal.a);
-        precise vec3 next_albedo = albedo * (1.0 - cover) + albedo_reveal.rgb * tint * cover;
-        precise vec4 next_surface = surface * (1.0 - cover) + layer_surface * cover;
+        LayerSample from_layer = sample_layer(c, key, kTileHiding ? key >> kKeyLayerShift : key);
+        float cover = visit == 0 ? 1.0 : ompv_cover(ompv_alpha(ompv_sum(share)), from_layer.albedo_reveal.a);
+        precise vec3 next_albedo = albedo * (1.0 - cover) + from_layer.albedo_reveal.rgb * tint * cover;
+        precise vec4 next_surface = surface * (1.0 - cover) + from_layer.surface * cover;
         albedo = next_albedo;
         surface = next_surface;
         if (kHasMetal) {
-            precise float next_metal = metalness * (1.0 - cover) + textureLod(MATERIAL_METAL, uv, lod).r * cover;
+            precise float next_metal = metalness * (1.0 - cover) + from_layer.metalness * cover;
             metalness = next_metal;
         }
     }

@@ -1,4 +1,5 @@
-// Composition against a plain composer (plain_composer.h); and the round trip of feedback until nothing is missing.
+// Composition against a plain composer (plain_composer.h); and the round trip of feedback until nothing is
+// missing.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -35,17 +36,37 @@ GroundSettings everything_on() {
 
 PlainWorld plain_world(World& w, const RandomMap& map, bool flat_layers) {
     PlainWorld plain{.map = map, .tiles_m = w.layers->tiles_m, .ground = w.document().settings().ground};
-    for (int i = 1; i <= w.layers->count; ++i) plain.layers.push_back(make_layer(i, flat_layers));
+    const std::vector<LayerEntry>& entries = w.document().settings().layers;
+    for (int i = 0; i < int(entries.size()); ++i) {
+        plain.layers.push_back(make_layer(i + 1, flat_layers));
+        if (const auto& blend = entries[size_t(i)].blend)
+            plain.transitions[i] = {w.document().layer_index(blend->from),
+                                    w.document().layer_index(blend->to), blend->threshold};
+    }
     return plain;
+}
+
+// Between layers of all reveals, at both ends and between them; and one whose place in the order is above
+// all.
+std::vector<LayerEntry> some_transitions() {
+    const auto transition = [](const char* name, const char* from, const char* to, double threshold) {
+        return LayerEntry{.name = name, .file = "", .blend = LayerEntry::Blend{from, to, threshold}};
+    };
+    return {transition("none", "grass", "layer 4", 0), transition("some", "dirt", "grass", 0.35),
+            transition("half", "grass", "scree", 0.5), transition("whole", "scree", "layer 3", 1),
+            transition("back", "layer 5", "dirt", 0.7)};
 }
 
 // All texels of some pages, borders included. `believed`: what the reference is told of the ground.
 Compared compare_pages(bool flat_layers, const GroundSettings& ground = {},
-                       const std::optional<GroundSettings>& believed = {}) {
-    World w(small_desc(PageFormat::rgba8), flat_layers, {.layers = 9, .ground = ground});
+                       const std::optional<GroundSettings>& believed = {},
+                       const std::vector<LayerEntry>& transitions = {}, double threshold_error = 0) {
+    World w(small_desc(PageFormat::rgba8), flat_layers,
+            {.layers = 9, .ground = ground, .transitions = transitions});
     const RandomMap map = write_random_map(w);
     PlainWorld plain = plain_world(w, map, flat_layers);
     if (believed) plain.ground = *believed;
+    for (auto& [layer, transition] : plain.transitions) transition.threshold += threshold_error;
     w.want_some_pages();
     w.run_frames(14);
     const int side = small_desc(PageFormat::rgba8).pages_per_side;
@@ -88,9 +109,10 @@ Compared compare_pages(bool flat_layers, const GroundSettings& ground = {},
             }
     }
     d.mean /= double(std::max<int64_t>(d.count, 1));
-    std::printf("%s layers%s%s: worst %.2f/255, mean %.3f/255, above 1/255: %.4f %%\n",
+    std::printf("%s layers%s%s%s: worst %.2f/255, mean %.3f/255, above 1/255: %.4f %%\n",
                 flat_layers ? "flat" : "rough", ground.tile_hiding ? ", tile hiding" : "",
-                ground.distortion_amplitude_m > 0 ? ", distortion" : "", d.worst, d.mean,
+                ground.distortion_amplitude_m > 0 ? ", distortion" : "",
+                transitions.empty() ? "" : ", transitions", d.worst, d.mean,
                 100.0 * double(d.above_one) / double(std::max<int64_t>(d.count, 1)));
     return result;
 }
@@ -129,7 +151,21 @@ TEST_F(ComposerTest, AReferenceWithoutTheSettingsDiffers) {
     EXPECT_GT(compare_pages(true, everything_on(), less).difference.worst, 20);
 }
 
-// Exactly on vertices, halfway between two and between four, where weights tie: the direct path takes any place.
+TEST_F(ComposerTest, TransitionsAreAsThePlainComposerHasThem) {
+    for (const GroundSettings& ground : {GroundSettings{}, everything_on()}) {
+        const Difference flat = compare_pages(true, ground, {}, some_transitions()).difference;
+        EXPECT_LE(flat.worst, 1.0);
+        const Difference rough = compare_pages(false, ground, {}, some_transitions()).difference;
+        EXPECT_LE(rough.worst, 3.5) << "two edges cut by filtered reveal maps, one in the other";
+        EXPECT_LT(rough.mean, 0.5);
+        EXPECT_LT(double(rough.above_one), 0.03 * double(rough.count));
+    }
+    EXPECT_GT(compare_pages(false, {}, {}, some_transitions(), 0.05).difference.worst, 10)
+        << "a wrong threshold is seen";
+}
+
+// Exactly on vertices, halfway between two and between four, where weights tie: the direct path takes any
+// place.
 TEST_F(ComposerTest, VerticesAndTiesAreAsThePlainComposerHasThem) {
     for (const GroundSettings& ground : {GroundSettings{}, GroundSettings{.tile_hiding = true}}) {
         World w(small_desc(PageFormat::rgba8), true, {.layers = 9, .ground = ground});
@@ -184,8 +220,10 @@ TEST_F(ComposerTest, SettingsOfTheGroundChangeLive) {
     const auto before = w.read_u32(w.texture->atlas(0));
     EXPECT_FALSE(w.layers->distortion);
     const auto change = [&](const GroundSettings& ground) {
-        need(w.layers->take_ground(*w.ring, ground));
-        need(w.texture->take_ground());
+        ProjectSettings settings = w.document().settings();
+        settings.ground = ground;
+        need(w.layers->take_settings(*w.ring, settings));
+        need(w.texture->take_settings());
         w.run_frames(30);
         EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
     };
@@ -195,6 +233,43 @@ TEST_F(ComposerTest, SettingsOfTheGroundChangeLive) {
     change({});
     EXPECT_FALSE(w.layers->distortion);
     EXPECT_EQ(w.read_u32(w.texture->atlas(0)), before) << "off is as if it had never been on";
+}
+
+// A transition is made, painted, changed and removed while pages are there.
+TEST_F(ComposerTest, TransitionsChangeLive) {
+    World w(small_desc(PageFormat::rgba8), false);
+    w.want_some_pages();
+    w.run_frames(14);
+    const uint64_t texture_bytes = w.layers->albedo_reveal.bytes();
+    const auto change = [&](const std::optional<LayerEntry::Blend>& blend) {
+        ProjectSettings settings = w.document().settings();
+        settings.layers.resize(3);
+        if (blend) settings.layers.push_back({.name = "t", .file = "", .blend = blend});
+        need(w.document().change_settings(settings));
+        ASSERT_TRUE(w.layers->has_textures_of(settings)) << "no texture is loaded again";
+        need(w.layers->take_settings(*w.ring, settings));
+        need(w.texture->take_settings());
+        w.run_frames(30);
+        EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
+    };
+    change(LayerEntry::Blend{"grass", "dirt", 0.5});
+    PaintCommand paint;
+    paint.dabs = {glm::dvec2(w.view.camera_m)};
+    paint.radius_m = 3;
+    paint.layer = "t";
+    w.on_dirt(w.fixture.apply(paint));
+    w.run_frames(30);
+    const auto half = w.read_u32(w.texture->atlas(0));
+    change(LayerEntry::Blend{"grass", "dirt", 0.8});
+    const auto more = w.read_u32(w.texture->atlas(0));
+    EXPECT_NE(more, half);
+    change(LayerEntry::Blend{"grass", "dirt", 0.5});
+    EXPECT_EQ(w.read_u32(w.texture->atlas(0)), half);
+    change(LayerEntry::Blend{"grass", "dirt", 1});
+    const auto all = w.read_u32(w.texture->atlas(0));
+    change(LayerEntry::Blend{"grass", "dirt", 0.8, true});
+    EXPECT_EQ(w.read_u32(w.texture->atlas(0)), all) << "removed: it shows dirt, which it was nearer to";
+    EXPECT_EQ(w.layers->albedo_reveal.bytes(), texture_bytes);
 }
 
 // --- feedback ---

@@ -1,7 +1,8 @@
-// A plain composer written from the talk's description, in doubles, with loops and a sort, sharing nothing with the shaders but
-// the hash that says which section turns how. Source: Call of Duty talk, "One Material Per Vertex", "Distortion", "Tile Hiding":
-// the four index texels around a texel weigh bilinearly, equal layers (with tile hiding: of one section) are merged, alpha is
-// doubled and clamped, layers are sorted, the lowest is opaque, reveal cuts the edge.
+// A plain composer written from the talk's description, in doubles, with loops and a sort, sharing nothing
+// with the shaders but the hash that says which section turns how. Source: Call of Duty talk, "One Material
+// Per Vertex", "Distortion", "Tile Hiding": the four index texels around a texel weigh bilinearly, equal
+// layers (with tile hiding: of one section) are merged, alpha is doubled and clamped, layers are sorted, the
+// lowest is opaque, reveal cuts the edge.
 #pragma once
 
 #include <algorithm>
@@ -44,9 +45,9 @@ inline RandomMap write_random_map(World& w) {
     for (size_t i = 0; i < map.texels.size(); ++i) {
         IndexTexel& t = map.texels[i];
         const bool speckled = i / 16 % 2 == 0;
-        t.layer = uint16_t(w.fixture.uniform(0, speckled ? 1 : 6) == 0
-                               ? w.fixture.uniform(0, w.layers->count - 1)
-                               : int(i / 16 % 2));
+        t.layer =
+            uint16_t(w.fixture.uniform(0, speckled ? 1 : 6) == 0 ? w.fixture.uniform(0, w.layers->count - 1)
+                                                                 : int(i / 16 % 2));
         for (uint8_t& c : t.tint) c = uint8_t(w.fixture.uniform(128, 255));
     }
     BulkWriter writer(w.document());
@@ -57,12 +58,18 @@ inline RandomMap write_random_map(World& w) {
     return map;
 }
 
+struct PlainTransition {
+    int from = 0, to = 0;
+    double threshold = 0.5;
+};
+
 struct PlainWorld {
     const RandomMap& map;
     std::vector<LayerTextures> layers{};
     std::vector<double> tiles_m;
     GroundSettings ground;
     std::vector<std::vector<glm::u16vec2>> distortion = make_distortion();
+    std::map<int, PlainTransition> transitions{};  // by layer
 };
 
 // albedo r g b linear, normal x y, gloss, occlusion as stored; reveal
@@ -124,6 +131,30 @@ inline Section section_of(int vertex_x, int vertex_y) {
     return s;
 }
 
+inline double plain_cover(double alpha, double reveal) {
+    return std::clamp((alpha * (1 + kSoftness) - (1 - reveal)) / kSoftness, 0.0, 1.0);
+}
+
+// One layer's textures at a place, turned as the section says.
+inline Channels plain_layer(const PlainWorld& w, int layer, const Section& section, glm::dvec2 world,
+                            double texel_m) {
+    const double tile_m = w.tiles_m[size_t(layer)];
+    const LayerTextures& textures = w.layers[size_t(layer)];
+    const int mip = nearest_mip(std::log2(texel_m * textures.size_texels / tile_m));
+    if (!w.ground.tile_hiding) return layer_at(textures, mip, world.x / tile_m, world.y / tile_m);
+    const double angle = section.turn * std::numbers::pi / 8;
+    const glm::dvec2 middle = (glm::dvec2(section.x, section.y) * 4.0 + 1.5) * kIndexSpacing_m;
+    const glm::dvec2 from = (world - middle) / tile_m;
+    const glm::dvec2 uv = glm::dvec2(std::cos(angle) * from.x - std::sin(angle) * from.y,
+                                     std::sin(angle) * from.x + std::cos(angle) * from.y) +
+                          section.shift;
+    Channels c = layer_at(textures, mip, uv.x, uv.y);
+    const double x = c[3] - 128 / 255.0, y = c[4] - 128 / 255.0;
+    c[3] = 128 / 255.0 + std::cos(angle) * x + std::sin(angle) * y;
+    c[4] = 128 / 255.0 - std::sin(angle) * x + std::cos(angle) * y;
+    return c;
+}
+
 // The material of a place as the index map's level has it; turns: which ones were used.
 inline Channels plain_material(const PlainWorld& w, glm::dvec2 world, double texel_m, int level,
                                std::set<int>* turns = nullptr) {
@@ -152,29 +183,20 @@ inline Channels plain_material(const PlainWorld& w, glm::dvec2 world, double tex
     Channels shown{};
     bool lowest = true;
     for (const auto& [key, m] : merged) {
-        const size_t layer = size_t(std::get<0>(key));
-        const double tile_m = w.tiles_m[layer];
-        const LayerTextures& textures = w.layers[layer];
-        const int mip = nearest_mip(std::log2(texel_m * textures.size_texels / tile_m));
-        glm::dvec2 uv = world / tile_m;
-        const double angle = m.section.turn * std::numbers::pi / 8;
-        if (w.ground.tile_hiding) {
-            const glm::dvec2 middle = (glm::dvec2(m.section.x, m.section.y) * 4.0 + 1.5) * kIndexSpacing_m;
-            const glm::dvec2 from = (world - middle) / tile_m;
-            uv = glm::dvec2(std::cos(angle) * from.x - std::sin(angle) * from.y,
-                            std::sin(angle) * from.x + std::cos(angle) * from.y) +
-                 m.section.shift;
-        }
-        Channels c = layer_at(textures, mip, uv.x, uv.y);
-        if (w.ground.tile_hiding) {
-            const double x = c[3] - 128 / 255.0, y = c[4] - 128 / 255.0;
-            c[3] = 128 / 255.0 + std::cos(angle) * x + std::sin(angle) * y;
-            c[4] = 128 / 255.0 - std::sin(angle) * x + std::cos(angle) * y;
+        const int layer = std::get<0>(key);
+        Channels c{};
+        if (const auto found = w.transitions.find(layer); found != w.transitions.end()) {
+            const PlainTransition& t = found->second;
+            c = plain_layer(w, t.from, m.section, world, texel_m);
+            const Channels over = plain_layer(w, t.to, m.section, world, texel_m);
+            const double cover = plain_cover(t.threshold, over[7]);
+            for (size_t k = 0; k < c.size(); ++k) c[k] += (over[k] - c[k]) * cover;
+        } else {
+            c = plain_layer(w, layer, m.section, world, texel_m);
         }
         for (int k = 0; k < 3; ++k) c[size_t(k)] *= linear_of(m.tint[k] / m.alpha);
         const double alpha = std::clamp(2 * m.alpha, 0.0, 1.0);
-        const double cover =
-            lowest ? 1 : std::clamp((alpha * (1 + kSoftness) - (1 - c[7])) / kSoftness, 0.0, 1.0);
+        const double cover = lowest ? 1 : plain_cover(alpha, c[7]);
         for (size_t k = 0; k < 7; ++k) shown[k] += (c[k] - shown[k]) * cover;
         lowest = false;
     }

@@ -33,7 +33,8 @@ inline std::vector<Answer> ask(World& w, const char* shader, const std::vector<Q
                                  .constants = {{30, w.texture->textures().layout},
                                                {31, w.texture->textures().placement},
                                                {40, w.layers->ground.tile_hiding},
-                                               {41, w.layers->ground.distortion_amplitude_m > 0}}}));
+                                               {41, w.layers->ground.distortion_amplitude_m > 0},
+                                               {42, w.layers->has_transitions}}}));
     auto answers = need(gpu::Buffer::create(device, {.name = "answers",
                                                      .size_bytes = queries.size() * sizeof(Answer),
                                                      .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));

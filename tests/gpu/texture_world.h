@@ -57,7 +57,7 @@ struct World {
         std::filesystem::create_directories(layers_folder);
         int seed = 1;
         for (const LayerEntry& entry : document().settings().layers)
-            need(save_layer(document().folder() / entry.file, make_layer(seed++, flat_layers)));
+            if (!entry.blend) need(save_layer(document().folder() / entry.file, make_layer(seed++, flat_layers)));
         ring = need(gpu::FrameRing::create(gpu::test_device(), 2));
         layers = need(LayerSet::create(*ring, document()));
         index = need(IndexMap::create(&gpu::test_device(), document(), {.slot_count = 64}));

@@ -94,3 +94,18 @@ def test_feedback(plain):
     for row in rows:
         assert 0 < row["least ms"] <= row["median ms"] <= row["p99 ms"]
     assert [row["different"] for row in rows if row["values"] == "all different"] == [240 * 136] * 2
+
+
+def test_materials(plain):
+    (_, pages), (_, hidden), (_, transitions) = bench("materials", plain)
+    assert [row["layers"] for row in pages] == [1] * 3 + [4] * 5
+    cost = {(row["layers"], row["with"]): row for row in pages}
+    assert cost[1, "plain"]["layer lookups a texel"] == 1
+    assert cost[4, "plain"]["layer lookups a texel"] < cost[4, "tile hiding"]["layer lookups a texel"] <= 4
+    assert all(row["a page ms"] > 0 for row in pages)
+    for row in hidden:
+        assert row["peak, hidden"] < row["peak, plain"] <= 1.2
+    for row in transitions:
+        assert row["mip 0 rms/255"] == 0
+        if row["threshold"] in (0, 1):
+            assert row["mip 3 rms/255"] < 1.5

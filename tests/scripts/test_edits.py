@@ -149,3 +149,31 @@ def test_settings_of_the_ground_are_set_and_refused(plain):
     assert "tile_hiding = false" in text and "distortion_period_m = 12.0" in text
     assert "must be true or false" in fails_with_one_sentence(run_loam("set", plain, "ground.tile_hiding", "1"))
     assert "must be a number" in fails_with_one_sentence(run_loam("set", plain, "sun.azimuth_rad", "north"))
+
+
+def test_transitions_are_made_placed_changed_and_removed(plain):
+    done = run_loam("transition", plain, "edge", "--from", "grass", "--to", "dirt", "--threshold", "0.4")
+    assert done.returncode == 0, done.stderr
+    with loam.open(str(plain)) as p:
+        edge = p.layers.index("edge")
+        p.apply({"cmd": "paint", "dabs": [[128, 128]], "radius_m": 60, "layer": "grass"})
+        p.apply({"cmd": "paint", "dabs": [[128, 128]], "radius_m": 12, "layer": "dirt", "transitions": True})
+        x = np.arange(100, 157, 0.5)
+        row = p.layer(x, np.full_like(x, 128.0))
+        assert set(row) == {p.layers.index("grass"), edge, p.layers.index("dirt")}
+        p.undo()
+        assert edge not in set(p.layer(x, np.full_like(x, 128.0)))
+        p.redo()
+        p.transition("edge", threshold=0.8)
+        p.remove_transition("edge")
+        assert "edge" not in p.layers and len(p.layers) == edge + 1, "its number is kept"
+        p.transition("new edge", "dirt", "grass")
+        assert p.layers.index("new edge") == edge, "and taken again"
+        with pytest.raises(loam.Error, match="to itself"):
+            p.transition("none", "dirt", "dirt")
+        with pytest.raises(loam.Error, match="no layer \"mud\" with textures"):
+            p.transition("none", "dirt", "mud")
+        with pytest.raises(loam.Error, match="true or false"):
+            p.apply({"cmd": "paint", "dabs": [[1, 1]], "layer": "dirt", "transitions": 1})
+    assert "there is no transition" in fails_with_one_sentence(run_loam("transition", plain, "edge", "--remove"))
+    assert "threshold is 2" in fails_with_one_sentence(run_loam("transition", plain, "new edge", "--threshold", "2"))

@@ -25,6 +25,7 @@ struct MapFixtureDesc {
     double relief_m = 20;
     int layers = 3;  // beyond grass, dirt and scree: "layer 3" and so on
     GroundSettings ground;
+    std::vector<LayerEntry> transitions;  // after the layers
 };
 
 class MapFixture {
@@ -46,6 +47,7 @@ class MapFixture {
             const std::string name = "layer " + std::to_string(i);
             settings.layers.push_back({name, "layers/" + name + ".layer"});
         }
+        settings.layers.insert(settings.layers.end(), desc.transitions.begin(), desc.transitions.end());
         settings.ground = desc.ground;
         auto created = Document::create(folder_, settings);
         if (!created) {

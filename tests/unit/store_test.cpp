@@ -199,7 +199,8 @@ TEST(project, comes_back_as_it_was) {
     s.roles.broken = "grass";
     s.default_layer = 2;
     s.layers[1].tile_m = 1.0 / 3;
-    s.ground = {.distortion_amplitude_m = 0.7, .distortion_period_m = 12.5, .tile_hiding = true};
+    s.layers.push_back({.name = "t", .file = "", .blend = LayerEntry::Blend{s.layers[0].name, s.layers[1].name, 1.0 / 3, true}});
+    s.ground = {.distortion_amplitude_m = 0.2, .distortion_period_m = 12.5, .tile_hiding = true};
     ASSERT_TRUE(save_project(folder.path(), s).ok());
     const auto t = take(load_project(folder.path()));
     EXPECT_EQ(t.name, s.name);
@@ -209,7 +210,8 @@ TEST(project, comes_back_as_it_was) {
     EXPECT_EQ(t.roles.broken, "grass");
     EXPECT_EQ(t.default_layer, 2);
     EXPECT_EQ(t.default_height_mm, 12000);
-    ASSERT_EQ(t.layers.size(), 3u);
+    ASSERT_EQ(t.layers.size(), 4u);
+    EXPECT_EQ(t.layers, s.layers);
     EXPECT_EQ(t.layers[1].tile_m, 1.0 / 3);
     EXPECT_EQ(t.height_samples_y, 207);
     EXPECT_EQ(t.ground, s.ground);
@@ -230,6 +232,10 @@ TEST(project, errors_are_sentences_with_the_line) {
         {good + "[[layer]]\nfile = \"a\"\n", "a layer needs a name"},
         {good + "[[layer]]\nname = \"a\"\n[[layer]]\nname = \"a\"\n", "two layers are called \"a\""},
         {good + "[[layer]]\nname = \"a\"\nfile = \"../../etc/passwd\"\n", "outside the project"},
+        {good + "[[layer]]\nname = \"a\"\nthreshold = 0.5\n", ":6: threshold and removed belong to layers with a blend"},
+        {good + "[[layer]]\nname = \"t\"\nblend = [\"a\", \"b\"]\n", "there is no layer \"a\" with textures"},
+        {good + "[[layer]]\nname = \"t\"\nblend = \"a\"\n", ":6: blend must be [from, to]"},
+        {good + "[[layer]]\nname = \"t\"\nblend = [\"a\", \"b\"]\nthreshold = 2\n", ":7: threshold is 2"},
         {good + "[ground]\ntile_hiding = 1\n", ":5: tile_hiding must be true or false"},
         {good + "[ground]\ndistortion_amplitude_m = 1.5\n", "must be 0 … 1 (index_spacing_m)"},
         {good + "[ground]\ndistortion_amplitude_m = nan\n", ":5: distortion_amplitude_m is nan"},
