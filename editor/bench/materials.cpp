@@ -6,6 +6,7 @@
 #include <cstring>
 #include <functional>
 #include <set>
+#include <utility>
 
 #include "editor/bench/bench.h"
 #include "editor/bench/stage.h"
@@ -214,7 +215,7 @@ Status add_tile_hiding(const BenchRequest& request, gpu::Device& device, BenchTa
             if (!project) return project.error();
             ProjectSettings settings = load_project(project->path()).value();
             settings.ground = {.tile_hiding = hiding};
-            settings.default_layer = uint16_t(layer);
+            std::swap(settings.layers[0], settings.layers[layer]);  // the map is all of number 0
             LOAM_TRY(save_project(project->path(), settings));
             auto document = Document::open(project->path(), OpenMode::read_only);
             if (!document) return document.error();
