@@ -1,51 +1,76 @@
 #include "editor/choices.h"
 
-#include <array>
 #include <string>
-#include <utility>
 
 namespace loam {
 
 namespace {
 
-template <typename T, size_t N>
-Result<T> parse_choice(std::string_view what, std::string_view name,
-                       const std::array<std::pair<const char*, T>, N>& choices) {
+constexpr QualityName kQualities[] = {{"very_low", "very low, 13² pages", Quality::very_low},
+                                      {"low", "low, 16² pages", Quality::low},
+                                      {"mid", "mid, 22² pages", Quality::mid},
+                                      {"high", "high, 30² pages", Quality::high},
+                                      {"ultra", "ultra, 42² pages", Quality::ultra}};
+constexpr PageFormatName kFormats[] = {{"bc1", "3 x BC1", PageFormat::bc1x3},
+                                       {"bc3", "2 x BC3", PageFormat::bc3x2},
+                                       {"rgba8", "uncompressed", PageFormat::rgba8}};
+
+struct FilterName {
+    const char* name;
+    std::optional<Filter> filter;
+};
+constexpr FilterName kFilters[] = {{"auto", std::nullopt},
+                                   {"bilinear", Filter::bilinear},
+                                   {"trilinear", Filter::trilinear},
+                                   {"tiles", Filter::anisotropic_tiles},
+                                   {"hardware", Filter::anisotropic_hardware}};
+
+// The row of that name.
+template <typename Row>
+Result<const Row*> find_named(std::string_view what, std::string_view name, std::span<const Row> rows) {
     std::string names;
-    for (const auto& [text, value] : choices) {
-        if (name == text) return value;
-        names += names.empty() ? text : fmt::format(", {}", text);
+    for (const Row& row : rows) {
+        if (name == row.name) return &row;
+        names += names.empty() ? row.name : fmt::format(", {}", row.name);
     }
     return error("unknown {} \"{}\", expected one of {}", what, name, names);
 }
 
 }  // namespace
 
+std::span<const QualityName> quality_names() {
+    return kQualities;
+}
+std::span<const PageFormatName> page_format_names() {
+    return kFormats;
+}
+
+const QualityName& quality_name(Quality quality) {
+    return kQualities[size_t(quality)];
+}
+
 Result<Quality> parse_quality(std::string_view name) {
-    return parse_choice<Quality, 5>("quality", name,
-                                    {{{"very_low", Quality::very_low},
-                                      {"low", Quality::low},
-                                      {"mid", Quality::mid},
-                                      {"high", Quality::high},
-                                      {"ultra", Quality::ultra}}});
+    auto row = find_named("quality", name, quality_names());
+    if (!row) return row.error();
+    return (*row)->quality;
 }
 
 Result<PageFormat> parse_page_format(std::string_view name) {
-    return parse_choice<PageFormat, 3>(
-        "format", name,
-        {{{"bc1", PageFormat::bc1x3}, {"bc3", PageFormat::bc3x2}, {"rgba8", PageFormat::rgba8}}});
+    auto row = find_named("format", name, page_format_names());
+    if (!row) return row.error();
+    return (*row)->format;
+}
+
+Result<std::optional<Filter>> parse_filter(std::string_view name) {
+    auto row = find_named("filter", name, std::span<const FilterName>(kFilters));
+    if (!row) return row.error();
+    return (*row)->filter;
 }
 
 Result<DebugView> parse_debug_view(std::string_view name) {
-    return parse_choice<DebugView, 8>("debug view", name,
-                                      {{{"none", DebugView::none},
-                                        {"mips", DebugView::mips},
-                                        {"sectors", DebugView::sectors},
-                                        {"normals", DebugView::normals},
-                                        {"occlusion", DebugView::occlusion},
-                                        {"indirection", DebugView::indirection},
-                                        {"shadow", DebugView::shadow},
-                                        {"albedo", DebugView::albedo}}});
+    auto row = find_named("debug view", name, debug_views());
+    if (!row) return row.error();
+    return (*row)->view;
 }
 
 }  // namespace loam

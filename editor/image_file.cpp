@@ -43,7 +43,7 @@ Status check_readable(const std::filesystem::path& file) {
 }
 
 // A PNG is a signature and chunks: length, name, data, checksum, up to IEND. Walking them finds a file that
-// is cut short before libpng does, which would print a line of its own.
+// is cut short, or has no pixels, before libpng does, which would print a line of its own.
 Status check_png_chunks(const std::filesystem::path& file) {
     constexpr std::array<unsigned char, 8> kSignature = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
     std::ifstream stream(file, std::ios::binary);
@@ -59,6 +59,13 @@ Status check_png_chunks(const std::filesystem::path& file) {
             uint64_t{head[0]} << 24 | uint64_t{head[1]} << 16 | uint64_t{head[2]} << 8 | head[3];
         if (!stream || at + 12 + length > size) break;
         if (std::equal(head.begin() + 4, head.end(), "IEND")) return {};
+        if (std::equal(head.begin() + 4, head.end(), "IHDR")) {  // width and height come first
+            stream.read(reinterpret_cast<char*>(head.data()), head.size());
+            const auto is_zero = [](unsigned char c) { return c == 0; };
+            if (std::all_of(head.begin(), head.begin() + 4, is_zero) ||
+                std::all_of(head.begin() + 4, head.end(), is_zero))
+                return error("{} is damaged: it says that it has no pixels", file.string());
+        }
         at += 12 + length;
     }
     return error("{} is cut short: its {} bytes end before the end of the picture", file.string(), size);
@@ -161,6 +168,33 @@ Result<SampleImage> read_with_oiio(const std::filesystem::path& file, int max_si
     return out;
 }
 
+Result<RgbaImage> read_rgba8_with_oiio(const std::filesystem::path& file, int max_side) {
+    OIIO::ImageSpec hints;
+    hints.attribute("oiio:UnassociatedAlpha", 1);
+    auto input = OIIO::ImageInput::open(file.string(), &hints);
+    if (!input)
+        return error("{} is not a picture that can be read: {}", file.string(), one_line(OIIO::geterror()));
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
+        return error("{} has no pixels", file.string());
+    if (spec.width > max_side || spec.height > max_side)
+        return error("{} has {} x {} pixels, at most {} a side are possible", file.string(), spec.width,
+                     spec.height, max_side);
+    const auto count = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
+    const int channels = std::min(spec.nchannels, 4);
+    std::vector<uint8_t> in(count * static_cast<size_t>(channels));
+    if (!input->read_image(0, 0, 0, channels, OIIO::TypeDesc::UINT8, in.data()))
+        return error("{} is damaged or cut short: {}", file.string(), one_line(input->geterror()));
+    RgbaImage image{spec.width, spec.height, std::vector<uint8_t>(count * 4)};
+    for (size_t i = 0; i < count; ++i) {
+        const uint8_t* from = &in[i * static_cast<size_t>(channels)];
+        uint8_t* to = &image.rgba[i * 4];
+        for (int c = 0; c < 3; ++c) to[c] = from[channels < 3 ? 0 : c];
+        to[3] = channels == 2 ? from[1] : channels == 4 ? from[3] : uint8_t{255};
+    }
+    return image;
+}
+
 Status write_with_oiio(const std::filesystem::path& file, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
                        const void* data) {
     auto output = OIIO::ImageOutput::create(file.string());
@@ -186,6 +220,16 @@ Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side
     LOAM_TRY(check_png_chunks(file));
     try {
         return read_with_oiio(file, max_side);
+    } catch (const std::exception& exception) {
+        return error("{} cannot be read: {}", file.string(), one_line(exception.what()));
+    }
+}
+
+Result<RgbaImage> read_rgba8(const std::filesystem::path& file, int max_side) {
+    LOAM_TRY(check_readable(file));
+    LOAM_TRY(check_png_chunks(file));
+    try {
+        return read_rgba8_with_oiio(file, max_side);
     } catch (const std::exception& exception) {
         return error("{} cannot be read: {}", file.string(), one_line(exception.what()));
     }

@@ -30,6 +30,13 @@ struct SampleImage {
 // side.
 [[nodiscard]] Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side);
 
+// Eight bits a channel as in the file, no colour conversion; grey is repeated, missing alpha is 255.
+struct RgbaImage {
+    int width = 0, height = 0;
+    std::vector<uint8_t> rgba;
+};
+[[nodiscard]] Result<RgbaImage> read_rgba8(const std::filesystem::path& file, int max_side);
+
 // Row 0 is the top. The format follows from the file's extension (png, tif, tiff, exr).
 [[nodiscard]] Status write_samples_u16(const std::filesystem::path& file, int width, int height,
                                        std::span<const uint16_t> samples);

@@ -64,12 +64,36 @@ Json to_report(const ProjectSettings& s) {
             {"layers", layers}};
 }
 
+Json to_report(const VirtualTexture::Statistics& t) {
+    const VirtualTexture::Sharpness& sharp = t.sharpness;
+    return {{"resident_pages", t.resident_pages},
+            {"capacity_pages", t.capacity_pages},
+            {"live_sectors", t.live_sectors},
+            {"requested_pages", t.requested_pages},
+            {"missing_pages", t.missing_pages},
+            {"dirty_pages", t.dirty_pages},
+            {"low_res_pages", t.low_res_pages},
+            {"hidden_pages", t.hidden_pages},
+            {"announced_missing", t.announced_missing},
+            {"indirection_texels", t.indirection_texels},
+            {"indirection_capacity", t.indirection_capacity},
+            {"capped_images", t.capped_images},
+            {"feedback_cells", t.feedback_cells},
+            {"terrain_cells", sharp.cells},
+            {"sharp_share", sharp.cells > 0 ? double(sharp.coarser[0]) / sharp.cells : 0.0},
+            {"page_ms", t.page_ms},
+            {"pages_dirtied", t.pages_dirtied},
+            {"pages_composed", t.pages_composed},
+            {"rects_composed", t.rects_composed},
+            {"texels_composed", t.texels_composed},
+            {"gpu_bytes", t.gpu_bytes}};
+}
+
 Json to_report(const FrameStatistics& s) {
     Json memory = Json::object(), passes = Json::array();
     for (const MemoryRow& row : s.memory) memory[row.name] = row.bytes;
     for (const gpu::PassTime& pass : s.passes)
         passes.push_back({{"pass", std::string(pass.name)}, {"gpu_ms", pass.gpu_ms}});
-    const VirtualTexture::Statistics& t = s.texture;
     return {{"patches", s.patches},
             {"patches_visible", s.patches_visible},
             {"triangles", s.triangles},
@@ -78,18 +102,7 @@ Json to_report(const FrameStatistics& s) {
             {"shadow_cascades_drawn", s.shadow_cascades_drawn},
             {"height", counters(s.height)},
             {"index", counters(s.index)},
-            {"texture",
-             {{"resident_pages", t.resident_pages},
-              {"capacity_pages", t.capacity_pages},
-              {"live_sectors", t.live_sectors},
-              {"requested_pages", t.requested_pages},
-              {"missing_pages", t.missing_pages},
-              {"dirty_pages", t.dirty_pages},
-              {"pages_dirtied", t.pages_dirtied},
-              {"pages_composed", t.pages_composed},
-              {"rects_composed", t.rects_composed},
-              {"texels_composed", t.texels_composed},
-              {"gpu_bytes", t.gpu_bytes}}},
+            {"texture", to_report(s.texture)},
             {"memory_bytes", memory},
             {"passes", passes}};
 }

@@ -13,6 +13,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json to_report(const Document::Statistics& statistics);
 [[nodiscard]] Json to_report(const ProjectSettings& settings);
 [[nodiscard]] Json to_report(const FrameStatistics& statistics);
+[[nodiscard]] Json to_report(const VirtualTexture::Statistics& statistics);
 [[nodiscard]] Json memory_report(Session& session);  // needs a device
 
 }  // namespace loam

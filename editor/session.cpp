@@ -91,7 +91,7 @@ RendererDesc reference_renderer(RendererDesc desc) {
 FrameSettings reference_frame(FrameSettings frame) {
     frame.shading = Shading::direct;
     frame.render_scale = 1.0f;
-    frame.fine_filter = true;
+    frame.at_rest = true;
     return frame;
 }
 
@@ -213,6 +213,21 @@ Status Session::step(const Camera& camera, int width, int height, const FrameSet
     return {};
 }
 
+Status Session::set_quality(Quality quality, std::optional<PageFormat> page_format) {
+    if (renderer_) LOAM_TRY(renderer_->set_quality(quality, page_format));
+    desc_.renderer.quality = quality;
+    desc_.renderer.page_format = page_format;
+    desc_.renderer.texture.pages_per_side = desc_.renderer.texture.indirection_size = 0;
+    return {};
+}
+
+Status Session::announce(const std::optional<Camera>& camera) {
+    auto renderer = this->renderer();
+    if (!renderer) return renderer.error();
+    (*renderer)->announce(camera);
+    return {};
+}
+
 Result<GroundBuffers> Session::ground_buffers(const Camera& camera, int width, int height) {
     auto renderer = this->renderer();
     if (!renderer) return renderer.error();
@@ -226,13 +241,14 @@ Result<GroundBuffers> Session::ground_buffers(const Camera& camera, int width, i
         using Value = typename std::remove_reference_t<decltype(texels)>::value_type;
         const size_t row_values = filled.x * per_pixel, pitch_values = image.width() * per_pixel;
         texels.resize(row_values * filled.y);
-        ring_->read_back(commands, image,
-                         [&texels, rows = filled.y, row_values, pitch_values](std::span<const std::byte> bytes) {
-                             for (size_t row = 0; row < rows; ++row)
-                                 std::memcpy(texels.data() + row * row_values,
-                                             bytes.data() + row * pitch_values * sizeof(Value),
-                                             row_values * sizeof(Value));
-                         });
+        ring_->read_back(
+            commands, image,
+            [&texels, rows = filled.y, row_values, pitch_values](std::span<const std::byte> bytes) {
+                for (size_t row = 0; row < rows; ++row)
+                    std::memcpy(texels.data() + row * row_values,
+                                bytes.data() + row * pitch_values * sizeof(Value),
+                                row_values * sizeof(Value));
+            });
     };
     read_back((*renderer)->gbuffer(), buffers.gbuffer, 4);
     // Only 32-bit depth is floats; elsewhere the list stays empty.

@@ -37,8 +37,8 @@ struct GroundBuffers {
     std::vector<float> depth;       // reversed Z, 0 where there is no ground
 };
 
-// What the reference has beyond a view's own settings: patches six node sides around the camera at full detail
-// (a few hundred), slots for all of them, 4 x 4 samples a pixel.
+// What the reference has beyond a view's own settings: patches six node sides around the camera at full
+// detail (a few hundred), slots for all of them, 4 x 4 samples a pixel.
 inline constexpr int kReferenceSupersample = 4;
 [[nodiscard]] RendererDesc reference_renderer(RendererDesc desc);
 [[nodiscard]] FrameSettings reference_frame(FrameSettings frame);
@@ -77,6 +77,10 @@ class Session {
 
     // Renders frames until settled (or max_frames) and returns the picture.
     Result<Picture> render(const RenderRequest& request);
+    // At the next use, or live: the picture keeps its texels until the new texture has them.
+    Status set_quality(Quality quality, std::optional<PageFormat> page_format);
+    // The camera will soon be there (none: no longer): its pages are made while other pictures are.
+    Status announce(const std::optional<Camera>& camera);
     // `frames` frames, without waiting for the picture to settle.
     Status step(const Camera& camera, int width, int height, const FrameSettings& settings, int frames);
     // One more frame, and what its ground pass wrote.

@@ -22,6 +22,8 @@ const std::vector<BenchName>& benches() {
          bench_edits},
         {"encoders", "quality of the page encoder beside other block compressors", bench_encoders},
         {"feedback", "analysis of a feedback buffer on one core", bench_feedback},
+        {"filter", "ways to filter the virtual texture: milliseconds, error against the reference",
+         bench_filter},
         {"flat", "a flight over the same ground on maps of 1, 4 and 16 km", bench_flat},
         {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
         {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},
@@ -105,12 +107,18 @@ double percentile(std::vector<double> values, double share) {
 FrameSettings moving_frame(float render_scale) {
     FrameSettings settings;
     settings.render_scale = render_scale;
-    settings.fine_filter = false;
+    settings.at_rest = false;
     return settings;
 }
 
 FrameSettings still_frame() {
     return {};
+}
+
+FrameSettings trilinear_frame() {
+    FrameSettings settings;
+    settings.filter = Filter::trilinear;
+    return settings;
 }
 
 // --- temporary projects ---

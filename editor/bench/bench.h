@@ -18,8 +18,9 @@ struct BenchRequest {
     int frames = 300;              // frame
     double goal_ms = 33;           // frame
     int dabs = 0;                  // edits: a row; 0: up to 200, as many as some seconds allow
-    std::optional<Camera> camera;  // resolve, quality; none: views of their own
+    std::optional<Camera> camera;  // resolve, quality, filter; none: views of their own
     std::filesystem::path dem;     // ground
+    std::filesystem::path images;  // encoders: folder of photographs
     std::filesystem::path
         pictures;        // pop, quality: a folder for the pictures that figures speak of; empty: none
     bool quick = false;  // fewer settings and frames: for tests
@@ -46,6 +47,7 @@ Result<BenchReport> bench_crater(const BenchRequest& request);
 Result<BenchReport> bench_edits(const BenchRequest& request);
 Result<BenchReport> bench_encoders(const BenchRequest& request);
 Result<BenchReport> bench_feedback(const BenchRequest& request);
+Result<BenchReport> bench_filter(const BenchRequest& request);
 Result<BenchReport> bench_flat(const BenchRequest& request);
 Result<BenchReport> bench_frame(const BenchRequest& request);
 Result<BenchReport> bench_ground(const BenchRequest& request);
@@ -73,6 +75,16 @@ Result<std::unique_ptr<Session>> open_read_only(const std::filesystem::path& pro
 // How the window draws while something moves, and at rest (editor/window/window_loop.cpp).
 [[nodiscard]] FrameSettings moving_frame(float render_scale);
 [[nodiscard]] FrameSettings still_frame();
+// At rest with one texel between the axes, as direct shading takes it: what the two are compared with.
+[[nodiscard]] FrameSettings trilinear_frame();
+
+struct View {
+    std::string name;
+    Camera camera;
+};
+// Close ground; a slope looked along, three metres above it; from a height over the map to its far corner. Of
+// a quick request the first only, or the request's own camera.
+Result<std::vector<View>> views_of(const BenchRequest& request, Session& session);
 
 struct MapPart {
     std::filesystem::path of;

@@ -56,7 +56,7 @@ Status place_decals(Session& session, const Camera& camera, int count) {
 
 Result<double> frame_ms(Session& session, const BenchRequest& request, const Camera& camera,
                         Shading shading) {
-    FrameSettings settings = still_frame();
+    FrameSettings settings = trilinear_frame();
     settings.shading = shading;
     if (shading == Shading::direct) settings.page_budget = 0;  // pages are the other picture's
     const double start_ms = now_ms();
@@ -88,7 +88,7 @@ Result<Pair> in_turns(Session& session, const BenchRequest& request, const Place
 // Resolve over floor, each less an empty frame.
 Result<double> resolve_to_floor(Session& session, const BenchRequest& request) {
     using Probe = Renderer::ResolveProbe;
-    const FrameSettings settings = still_frame();
+    const FrameSettings settings = trilinear_frame();
     std::vector<double> empty, resolve, floor;
     for (int i = -2; i < (request.quick ? 3 : kTurns); ++i)
         for (const auto& [times, with, probe] :
@@ -126,7 +126,7 @@ Result<BenchReport> bench_cost(const BenchRequest& request) {
             auto settled = s.render({.camera = place->camera(0),
                                      .width = request.width,
                                      .height = request.height,
-                                     .frame = still_frame()});
+                                     .frame = trilinear_frame()});
             if (!settled) return settled.error();
             auto still = in_turns(s, request, *place, 0);
             if (!still) return still.error();

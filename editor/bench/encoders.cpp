@@ -1,196 +1,196 @@
-// Quality of the page encoder: pages of the project through it, against the same pages uncompressed, beside
-// the encoders that are installed: libsquish (range fit, cluster fit) and stb_dxt in its high quality.
-#include <array>
+// Quality and speed of the block encoders beside those that are installed, a table a format: PSNR of the
+// albedo of each page, of all of them together, and of the other textures with the weights that live pages
+// use.
 #include <cmath>
-#include <cstring>
 
-#include "editor/bench/stage.h"
+#include "editor/bench/encoder_pages.h"
+#include "runtime/gpu/frame_ring.h"
+#include "runtime/gpu/upload.h"
+#include "runtime/texture/block_decoder.h"
 #include "runtime/texture/composer.h"
-#include "shaders/texture/bc1.h"
-
-#ifdef LOAM_HAVE_SQUISH
-#include <squish.h>
-#endif
-#ifdef LOAM_HAVE_STB_DXT
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wunused-function"
-#define STB_DXT_STATIC
-#define STB_DXT_IMPLEMENTATION
-#include <stb/stb_dxt.h>
-#pragma GCC diagnostic pop
-#endif
 
 namespace loam::bench {
 
 namespace {
 
-constexpr int kAtlasPages = 4;  // a side
-constexpr int kAtlasTexels = kAtlasPages * kPageTexels;
-using Texels = std::vector<uint8_t>;  // RGBA8 of an atlas
-using Blocks = std::vector<glm::uvec2>;
-
-struct Encoder {
+struct OwnEncoder {
     const char* name;
-    std::function<glm::uvec2(const uint8_t* rgba)> encode;
+    BlockFormat format;
+    int repeats;  // within a frame that is timed
+};
+constexpr OwnEncoder kOwn[] = {{"Loam, live", BlockFormat::bc1, 8}, {"Loam, fine", BlockFormat::bc1_fine, 1},
+                               {"Loam", BlockFormat::bc3, 8},       {"Loam", BlockFormat::bc4, 8},
+                               {"Loam", BlockFormat::astc4x4, 1},   {"Loam", BlockFormat::astc6x6, 1}};
+constexpr const char* kTitles[] = {"BC1", "BC3: albedo, gloss as alpha", "BC4: gloss", "ASTC 4x4",
+                                   "ASTC 6x6"};
+
+size_t title_of(BlockFormat format) {
+    switch (format) {
+        case BlockFormat::bc1:
+        case BlockFormat::bc1_fine:
+            return 0;
+        case BlockFormat::bc3:
+            return 1;
+        case BlockFormat::bc4:
+            return 2;
+        case BlockFormat::astc4x4:
+            return 3;
+        case BlockFormat::astc6x6:
+            return 4;
+    }
+    return 0;
+}
+
+// Compresses pages on the device. A page's time is that of a frame that encodes it several times less one's
+// that does so once, so that what a frame costs anyway falls out; the least of three.
+class OnDevice {
+  public:
+    static Result<OnDevice> create(gpu::Device& device, const OwnEncoder& own) {
+        OnDevice made(device, own);
+        auto encoder = BlockEncoder::create(device, own.format);
+        if (!encoder) return encoder.error();
+        made.encoder_ = std::move(*encoder);
+        auto ring = gpu::FrameRing::create(device, 2);
+        if (!ring) return ring.error();
+        made.ring_ = std::move(*ring);
+        auto image = gpu::Image::create(device, {.name = "page",
+                                                 .format = VK_FORMAT_R8G8B8A8_UNORM,
+                                                 .width = kPageTexels,
+                                                 .height = kPageTexels,
+                                                 .usage = VK_IMAGE_USAGE_SAMPLED_BIT});
+        if (!image) return image.error();
+        made.image_ = std::move(*image);
+        auto buffer =
+            gpu::Buffer::create(device, {.name = "blocks",
+                                         .size_bytes = made.encoder_.bytes_of(glm::ivec2(kPageTexels)),
+                                         .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+        if (!buffer) return buffer.error();
+        made.buffer_ = std::move(*buffer);
+        return made;
+    }
+    Result<PageResult> run(const Texels& page, glm::vec3 weights) {
+        std::vector<uint8_t> blocks(encoder_.bytes_of(glm::ivec2(kPageTexels)));
+        double least[2] = {1e30, 1e30};
+        for (int repeat = 0; repeat < 3; ++repeat)
+            for (const bool several : {false, true}) {
+                auto ms = frame_ms(page, weights, several ? 1 + own_.repeats : 1, blocks);
+                if (!ms) return ms.error();
+                least[several] = std::min(least[several], *ms);
+            }
+        return PageResult{mean_square_errors(own_.format, blocks, page, glm::ivec2(kPageTexels)),
+                          std::max(least[1] - least[0], 0.0) / own_.repeats};
+    }
+
+  private:
+    OnDevice(gpu::Device&, const OwnEncoder& own) : own_(own) {}
+    Result<double> frame_ms(const Texels& page, glm::vec3 weights, int times, std::vector<uint8_t>& blocks) {
+        auto frame = ring_->begin();
+        if (!frame) return frame.error();
+        gpu::upload_to_image(*ring_, (*frame)->commands, image_, 0, 0, 0, 0, kPageTexels, kPageTexels,
+                             std::as_bytes(std::span(page)));
+        for (int i = 0; i < times; ++i)
+            encoder_.cmd_encode((*frame)->commands, image_, glm::ivec2(kPageTexels), buffer_, weights);
+        ring_->read_back((*frame)->commands, buffer_, 0, blocks.size(),
+                         [&blocks](std::span<const std::byte> got) {
+                             std::copy(got.begin(), got.end(), reinterpret_cast<std::byte*>(blocks.data()));
+                         });
+        const double start_ms = now_ms();
+        LOAM_TRY(ring_->finish(**frame));
+        return now_ms() - start_ms;
+    }
+    OwnEncoder own_;
+    BlockEncoder encoder_;
+    std::unique_ptr<gpu::FrameRing> ring_;
+    gpu::Image image_;
+    gpu::Buffer buffer_;
 };
 
-// Pages of several sizes over the map: texels of 26 cm, 3 cm and 4 mm.
-Result<std::vector<ComposeJob>> pages_of(Stage& stage, const TextureLayout& layout) {
-    std::vector<ComposeJob> jobs;
-    const int width = 1 << layout.default_log2_width;
-    const WorldRect bounds = stage.document.bounds();
-    for (int i = 0; i < kAtlasPages * kAtlasPages; ++i) {
-        ComposeJob job;
-        const double share_x = (i % kAtlasPages + 0.5) / kAtlasPages,
-                     share_y = (i / kAtlasPages + 0.5) / kAtlasPages;
-        const glm::dvec2 at = glm::dvec2(bounds.width() * share_x, bounds.height() * share_y) / 64.0;
-        const int depth = i % 4 == 1 ? 3 : 6;
-        job.page = i % 4 < 1 || i % 4 == 3
-                       ? PageId{{},
-                                layout.default_log2_width,
-                                std::min(int(at.x), width - 1),
-                                std::min(int(at.y), width - 1)}
-                       : PageId{{true, int(at.x), int(at.y)}, depth, (1 << depth) / 2, (1 << depth) / 2};
-        job.rect = {0, 0, kPageTexels, kPageTexels};
-        job.target = {i % kAtlasPages, i / kAtlasPages};
-        const WorldRect square = layout.square(job.page);
-        job.index_page =
-            stage.index->page_for_square(square.min_x, square.min_y, layout.page_side_m(job.page));
-        if (!stage.index->map().exists(job.index_page)) continue;
-        LOAM_TRY(stage.make_resident(job.index_page));
-        jobs.push_back(job);
+// The first texture as a format takes it: BC3 has the second texture's red as alpha, BC4 it alone.
+Texels first_texture(const EncoderPage& page, BlockFormat format) {
+    Texels texels = page.textures[0];
+    const Texels& gloss = page.textures[1].empty() ? page.textures[0] : page.textures[1];
+    for (size_t i = 0; i < texels.size(); i += 4) {
+        if (format == BlockFormat::bc3) texels[i + 3] = gloss[i];
+        if (format == BlockFormat::bc4) texels[i] = gloss[i];
     }
-    for (ComposeJob& job : jobs) {
-        LOAM_TRY(stage.make_resident(job.index_page));
-        job.index_slot = stage.index->map().slot_of(job.index_page);
-    }
-    return jobs;
+    return texels;
 }
 
-Result<std::array<Texels, 3>> composed(Stage& stage, const TextureLayout& layout, PageFormat format,
-                                       const std::vector<ComposeJob>& jobs) {
-    auto atlas = make_page_atlas(stage.device, page_textures(format), kAtlasPages, kAtlasPages);
-    if (!atlas) return atlas.error();
-    auto composer = Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout,
-                                     page_textures(format), true);
-    if (!composer) return composer.error();
-    std::array<Texels, 3> bytes;
-    auto ms = stage.timed_frame([&](gpu::Commands& commands) -> Status {
-        LOAM_TRY((*composer)->cmd_compose(*stage.ring, commands, jobs, *atlas));
-        for (size_t which = 0; which < 3; ++which)
-            stage.ring->read_back(commands, (*atlas)[which], [&bytes, which](std::span<const std::byte> got) {
-                bytes[which].resize(got.size());
-                std::memcpy(bytes[which].data(), got.data(), got.size());
-            });
-        return {};
-    });
-    if (!ms) return ms.error();
-    return bytes;
+double weighted(glm::dvec4 mean_square, glm::vec3 weights, BlockFormat format) {
+    if (format == BlockFormat::bc4) return mean_square.x;
+    const glm::dvec4 w(weights, format == BlockFormat::bc3 ? 1 : 0);
+    return glm::dot(mean_square, w) / (w.x + w.y + w.z + w.w);
 }
 
-// Other encoders also use the mode of three colours and black.
-glm::vec3 decoded(glm::uvec2 block, int i) {
-    const uint32_t c0 = block.x & 0xffffu, c1 = block.x >> 16u, index = block.y >> uint32_t(i * 2) & 3u;
-    if (c0 > c1 || index < 2) return shared::bc1_decode(block, i);
-    return index == 2 ? (shared::bc1_unpack565(c0) + shared::bc1_unpack565(c1)) * 0.5f : glm::vec3(0);
-}
-
-// Mean of the channels' squared errors, weighted, as PSNR, over the pages composed.
-double psnr_db_of(const Texels& texels, const Blocks& blocks, const std::vector<ComposeJob>& jobs,
-                  glm::vec3 weights) {
-    constexpr int kBlocks = kAtlasTexels / 4, kPageBlocks = kPageTexels / 4;
-    double sum = 0;
-    for (const ComposeJob& job : jobs)
-        for (int y = 0; y < kPageBlocks; ++y)
-            for (int x = 0; x < kPageBlocks; ++x) {
-                const int bx = job.target.x * kPageBlocks + x, by = job.target.y * kPageBlocks + y;
-                for (int i = 0; i < 16; ++i) {
-                    const glm::vec3 got = decoded(blocks[size_t(by * kBlocks + bx)], i) * 255.0f;
-                    const size_t at = (size_t(by * 4 + i / 4) * kAtlasTexels + size_t(bx * 4 + i % 4)) * 4;
-                    const glm::vec3 d = got - glm::vec3(texels[at], texels[at + 1], texels[at + 2]);
-                    sum += double(glm::dot(d * d, weights));
-                }
-            }
-    const double mean =
-        sum / (double(jobs.size()) * kPageTexels * kPageTexels * double(weights.x + weights.y + weights.z));
-    return 10 * std::log10(255.0 * 255.0 / std::max(mean, 1e-9));
-}
-
-Blocks encode_all(const Texels& texels, const Encoder& encoder) {
-    constexpr int kBlocks = kAtlasTexels / 4;
-    Blocks blocks(size_t(kBlocks) * kBlocks);
-    uint8_t block[64];
-    for (int by = 0; by < kBlocks; ++by)
-        for (int bx = 0; bx < kBlocks; ++bx) {
-            for (int y = 0; y < 4; ++y)
-                std::memcpy(block + 16 * y, &texels[(size_t(by * 4 + y) * kAtlasTexels + size_t(bx * 4)) * 4],
-                            16);
-            blocks[size_t(by * kBlocks + bx)] = encoder.encode(block);
+Result<Json> row_of(const OtherEncoder& encoder, const std::vector<EncoderPage>& pages) {
+    static constexpr const char* kOthers[3] = {"", "gloss, normal x, occlusion", "metalness, normal y"};
+    Json row{{"encoder", encoder.name}};
+    double sums[3] = {}, ms = 0;
+    int runs = 0;
+    const bool one_texture = pages[0].textures[1].empty() || encoder.format == BlockFormat::bc3 ||
+                             encoder.format == BlockFormat::bc4;
+    for (const EncoderPage& page : pages)
+        for (size_t which = 0; which < (one_texture ? 1u : 3u); ++which) {
+            const glm::vec3 weights = which == 0 ? glm::vec3(1) : glm::vec3(Composer::kRowWeights[which]);
+            auto result =
+                encoder.run(which == 0 ? first_texture(page, encoder.format) : page.textures[which], weights);
+            if (!result) return result.error();
+            const double error = weighted(result->mean_square, weights, encoder.format);
+            sums[which] += error / double(pages.size());
+            if (which == 0) row[page.name] = rounded(decibels(error), 2);
+            ms += result->ms;
+            ++runs;
         }
-    return blocks;
+    row["all"] = rounded(decibels(sums[0]), 2);
+    for (size_t which = 1; which < 3 && !one_texture; ++which)
+        row[kOthers[which]] = rounded(decibels(sums[which]), 2);
+    ms /= runs;
+    const double side = shape_of(encoder.format).side_texels,
+                 blocks = std::pow(std::ceil(kPageTexels / side), 2);
+    row["ms a page"] = rounded(ms, 2);
+    row["blocks a second"] = ms > 0 ? Json(std::round(blocks / ms * 1000)) : Json();
+    return row;
 }
 
-std::vector<Encoder> encoders_for([[maybe_unused]] glm::vec3 weights) {
-    std::vector<Encoder> list;
-#ifdef LOAM_HAVE_STB_DXT
-    list.push_back({"stb_dxt, high quality", [](const uint8_t* rgba) {
-                        glm::uvec2 block;
-                        stb_compress_dxt_block(reinterpret_cast<unsigned char*>(&block), rgba, 0,
-                                               STB_DXT_HIGHQUAL);
-                        return block;
-                    }});
-#endif
-#ifdef LOAM_HAVE_SQUISH
-    for (const bool cluster : {false, true})
-        list.push_back({cluster ? "libsquish, cluster fit" : "libsquish, range fit",
-                        [cluster, weights](const uint8_t* rgba) {
-                            glm::uvec2 block;
-                            float metric[3] = {weights.x, weights.y, weights.z};
-                            squish::Compress(rgba, &block,
-                                             squish::kDxt1 | (cluster ? squish::kColourClusterFit
-                                                                      : squish::kColourRangeFit),
-                                             metric);
-                            return block;
-                        }});
-#endif
-    return list;
+Result<BenchReport> tables_of(gpu::Device& device, const std::vector<EncoderPage>& pages,
+                              const std::string& of, bool quick) {
+    BenchReport report;
+    for (const char* title : kTitles) report.push_back({fmt::format("{}, {}", title, of), {}});
+    for (const OwnEncoder& own : kOwn) {
+        auto on_device = OnDevice::create(device, own);
+        if (!on_device) return on_device.error();
+        const OtherEncoder encoder{own.name, own.format, [&](const Texels& page, glm::vec3 weights) {
+                                       return on_device->run(page, weights);
+                                   }};
+        auto row = row_of(encoder, pages);
+        if (!row) return row.error();
+        report[title_of(own.format)].rows.push_back(*row);
+    }
+    for (const OtherEncoder& encoder : other_encoders()) {
+        if (quick && encoder.name.find("cluster") != std::string::npos) continue;
+        auto row = row_of(encoder, pages);
+        if (!row) return row.error();
+        report[title_of(encoder.format)].rows.push_back(*row);
+    }
+    return report;
 }
 
 }  // namespace
 
 Result<BenchReport> bench_encoders(const BenchRequest& request) {
-    auto document = Document::open(request.project, OpenMode::read_only);
-    if (!document) return document.error();
     auto device = gpu::Device::create(request.session.device);
     if (!device) return device.error();
-    if (!(*device)->caps().bc) return error("the device {} has no block compression", (*device)->caps().name);
-    auto stage = Stage::create(**device, **document);
-    if (!stage) return stage.error();
-    const TextureLayout layout = texture_layout((*document)->bounds());
-    auto jobs = pages_of(*stage, layout);
-    if (!jobs) return jobs.error();
-    auto plain = composed(*stage, layout, PageFormat::rgba8, *jobs);
-    if (!plain) return plain.error();
-    auto packed = composed(*stage, layout, PageFormat::bc1x3, *jobs);
-    if (!packed) return packed.error();
-
-    static constexpr const char* kTextures[3] = {"albedo dB", "gloss, normal x, occlusion dB",
-                                                 "metalness, normal y dB"};
-    std::vector<Json> rows{{{"encoder", "page encoder"}}};
-    for (const Encoder& encoder : encoders_for({})) rows.push_back({{"encoder", encoder.name}});
-    for (size_t which = 0; which < 3; ++which) {
-        const glm::vec3 weights(Composer::kRowWeights[which]);
-        Blocks blocks((*packed)[which].size() / 8);
-        std::memcpy(blocks.data(), (*packed)[which].data(), (*packed)[which].size());
-        rows[0][kTextures[which]] = rounded(psnr_db_of((*plain)[which], blocks, *jobs, weights), 2);
-        const std::vector<Encoder> others = encoders_for(weights);
-        for (size_t i = 0; i < others.size(); ++i)
-            rows[i + 1][kTextures[which]] = rounded(
-                psnr_db_of((*plain)[which], encode_all((*plain)[which], others[i]), *jobs, weights), 2);
-    }
-    return BenchReport{
-        {fmt::format("BC1 of {} pages, PSNR with the encoder's channel weights", jobs->size()), rows}};
+    auto pages = composed_pages(**device, request.project);
+    if (!pages) return pages.error();
+    if (request.quick) pages->erase(pages->begin() + 1, pages->end() - 1);
+    auto report = tables_of(**device, *pages, "PSNR of composed pages in dB", request.quick);
+    if (!report || request.images.empty()) return report;
+    auto photographs = photograph_pages(request.images);
+    if (!photographs) return photographs.error();
+    auto more = tables_of(**device, *photographs, "PSNR of photographs in dB", request.quick);
+    if (!more) return more.error();
+    report->insert(report->end(), more->begin(), more->end());
+    return report;
 }
 
 }  // namespace loam::bench

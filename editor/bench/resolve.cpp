@@ -32,7 +32,8 @@ Result<BenchReport> bench_resolve(const BenchRequest& request) {
         {fmt::format("resolve at {}x{}, medians of {} turns", request.width, request.height, kTurns), {}}};
     for (const bool fine : {false, true}) {
         FrameSettings settings;
-        settings.fine_filter = fine;
+        settings.at_rest = fine;
+        settings.filter = fine ? Filter::trilinear : Filter::bilinear;
         auto picture =
             s.render({.camera = camera, .width = request.width, .height = request.height, .frame = settings});
         if (!picture) return picture.error();

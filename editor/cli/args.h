@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "editor/nearest_word.h"
 #include "editor/session.h"
 #include "editor/text_numbers.h"
 #include "runtime/base/result.h"
@@ -52,8 +53,5 @@ class Args {
 [[nodiscard]] Result<Args> parse_args(std::span<const Positional> positionals,
                                       std::span<const Option> options,
                                       std::span<const std::string> arguments);
-
-// The candidate with the fewest edits to `word`, empty when none is close.
-[[nodiscard]] std::string nearest_word(std::string_view word, std::span<const std::string> candidates);
 
 }  // namespace loam::cli

@@ -30,7 +30,7 @@ int run(const std::vector<std::string>& words) {
         if (words[0] == v.name) verb = &v;
     }
     if (!verb) {
-        const std::string nearest = nearest_word(words[0], names);
+        const std::string nearest = loam::nearest_word(words[0], names);
         const std::string hint =
             nearest.empty() ? "see loam --help" : fmt::format("did you mean {}?", nearest);
         return complain("", fmt::format("unknown verb \"{}\", {}", words[0], hint), kUsage);

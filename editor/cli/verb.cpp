@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "editor/choices.h"
+#include "editor/settings.h"
 
 namespace loam::cli {
 
@@ -16,10 +17,9 @@ std::string shown(const Option& option) {
 }  // namespace
 
 const std::vector<Verb>& verbs() {
-    static const std::vector<Verb> table = {edit_verb(),   new_verb(),    import_verb(),
-                                            export_verb(), replay_verb(), render_verb(),
-                                            info_verb(),   set_verb(),    transition_verb(), verify_verb(),
-                                            bench_verb()};
+    static const std::vector<Verb> table = {edit_verb(),   new_verb(),    import_verb(),     export_verb(),
+                                            encode_verb(), replay_verb(), render_verb(),     info_verb(),
+                                            set_verb(),    transition_verb(), verify_verb(), bench_verb()};
     return table;
 }
 
@@ -53,6 +53,8 @@ std::vector<Option> with_device_options(std::vector<Option> options) {
         {"--quality", ValueKind::text, "Q",
          "very_low, low, mid, high or ultra: the size of the virtual texture"},
         {"--format", ValueKind::text, "F", "bc1, bc3 or rgba8: the format of texture pages; default by device"},
+        {"--set", ValueKind::text, "NAME=VALUE[,…]",
+         "figures of the renderer; loam info --settings lists them"},
     };
     options.insert(options.end(), std::begin(device), std::end(device));
     return options;
@@ -72,6 +74,7 @@ Result<SessionDesc> session_desc(const Args& args) {
         if (!format) return format.error();
         desc.renderer.page_format = *format;
     }
+    LOAM_TRY(change_settings(desc.renderer, args.text("--set")));
     return desc;
 }
 

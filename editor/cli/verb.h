@@ -26,6 +26,7 @@ struct Verb {
 [[nodiscard]] Verb new_verb();
 [[nodiscard]] Verb import_verb();
 [[nodiscard]] Verb export_verb();
+[[nodiscard]] Verb encode_verb();
 [[nodiscard]] Verb replay_verb();
 [[nodiscard]] Verb render_verb();
 [[nodiscard]] Verb info_verb();
@@ -34,7 +35,7 @@ struct Verb {
 [[nodiscard]] Verb verify_verb();
 [[nodiscard]] Verb bench_verb();
 
-// --device, --validation, --quality, --format: for every verb that renders.
+// --device, --validation, --quality, --format, --set: for every verb that renders.
 [[nodiscard]] std::vector<Option> with_device_options(std::vector<Option> options);
 [[nodiscard]] Result<SessionDesc> session_desc(const Args& args);
 

@@ -30,6 +30,7 @@ Status run(const Args& args) {
     request.goal_ms = args.number("--goal", 33);
     request.dabs = args.integer("--dabs", 0);
     request.dem = args.text("--dem");
+    request.images = args.text("--images");
     request.pictures = args.text("--pictures");
     request.quick = args.has("--quick");
     if (args.has("--camera")) request.camera = parse_camera(args.text("--camera")).value();
@@ -54,13 +55,14 @@ Verb bench_verb() {
         .positionals = {{"NAME", "which bench, see below"}, {"PROJECT", "project folder; it is not changed"}},
         .options = with_device_options(
             {{"--size", ValueKind::size, "WxH", "of the pictures; default 960x540"},
-             {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]", "resolve, quality: this view only"},
+             {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]", "resolve, quality, filter: this view only"},
              {"--frames", ValueKind::integer, "N", "frame: how many; default 300"},
              {"--goal", ValueKind::number, "MS", "frame: milliseconds a frame; default 33"},
              {"--dabs", ValueKind::integer, "N", "edits: a row; default up to 200 within 5 s"},
              {"--dem", ValueKind::text, "DIR", "ground, quality: folder of real elevation data"},
+             {"--images", ValueKind::text, "DIR", "encoders: folder of photographs, too"},
              {"--pictures", ValueKind::text, "DIR",
-              "pop, quality: folder for the pictures that figures speak of"},
+              "pop, quality, filter: folder for the pictures that figures speak of"},
              {"--quick", ValueKind::none, "", "fewer views and repeats"},
              {"--json", ValueKind::none, "", "print as JSON"}}),
         .run = run,

@@ -11,8 +11,11 @@ Status run(const Args& args) {
 #ifdef LOAM_HAS_WINDOW
     WindowOptions options;
     options.project = args.positional(0);
-    options.device.device_filter = args.text("--device");
-    options.device.validation = options.validation = args.has("--validation");
+    auto session = session_desc(args);
+    if (!session) return session.error();
+    options.device = session->device;
+    options.validation = session->device.validation;
+    options.renderer = session->renderer;
     const PixelSize size = args.size("--size", {1280, 800});
     options.width = size.width;
     options.height = size.height;
@@ -34,21 +37,18 @@ Status run(const Args& args) {
 }  // namespace
 
 Verb edit_verb() {
-    return {
-        .name = "edit",
-        .summary = "opens the window",
-        .positionals = {{"PROJECT", "project folder"}},
-        .options = {{"--size", ValueKind::size, "WxH", "of the window; default 1280x800"},
-                    {"--record", ValueKind::text, "FILE", "append every command to this script"},
-                    {"--shaders", ValueKind::text, "DIR",
-                     "read shaders from here and reload them when a file changes"},
-                    {"--ui-scale", ValueKind::number, "S",
-                     "size of the interface; default as the screen says"},
-                    {"--max-frames", ValueKind::integer, "N", "close after so many frames"},
-                    {"--report", ValueKind::none, "", "say what happens as JSON lines on stdout"},
-                    {"--device", ValueKind::text, "NAME", "part of the Vulkan device's name, or its number"},
-                    {"--validation", ValueKind::none, "", "Vulkan validation"}},
-        .run = run};
+    return {.name = "edit",
+            .summary = "opens the window",
+            .positionals = {{"PROJECT", "project folder"}},
+            .options = with_device_options(
+                {{"--size", ValueKind::size, "WxH", "of the window; default 1280x800"},
+                 {"--record", ValueKind::text, "FILE", "append every command to this script"},
+                 {"--shaders", ValueKind::text, "DIR",
+                  "read shaders from here and reload them when a file changes"},
+                 {"--ui-scale", ValueKind::number, "S", "size of the interface; default as the screen says"},
+                 {"--max-frames", ValueKind::integer, "N", "close after so many frames"},
+                 {"--report", ValueKind::none, "", "say what happens as JSON lines on stdout"}}),
+            .run = run};
 }
 
 }  // namespace loam::cli

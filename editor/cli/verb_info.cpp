@@ -1,5 +1,6 @@
 #include "editor/cli/verb.h"
 #include "editor/report.h"
+#include "editor/settings.h"
 #include "runtime/gpu/device.h"
 
 namespace loam::cli {
@@ -37,6 +38,10 @@ Result<Json> report_of(const Args& args) {
     json["settings"] = to_report((*session)->document().settings());
     json["statistics"] = to_report((*session)->document().statistics());
     json["devices"] = gpu::device_names();
+    if (args.has("--settings"))
+        for (const SettingText& s : list_settings(desc->renderer))
+            json["renderer"].push_back(
+                {{"name", s.name}, {"value", s.value}, {"range", s.range}, {"help", s.help}});
     if (!args.has("--gpu")) return json;
     const PixelSize size = args.size("--size", {960, 540});
     LOAM_TRY((*session)->step((*session)->default_camera(), size.width, size.height, {}, 8));
@@ -67,6 +72,7 @@ Verb info_verb() {
         .positionals = {{"PROJECT", "project folder"}},
         .options = with_device_options(
             {{"--gpu", ValueKind::none, "", "render a few frames and print the memory table and the passes"},
+             {"--settings", ValueKind::none, "", "print the figures that --set changes"},
              {"--size", ValueKind::size, "WxH", "of those frames; default 960x540"},
              {"--json", ValueKind::none, "", "print as JSON"}}),
         .run = run};

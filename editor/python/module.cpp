@@ -1,7 +1,11 @@
 // import loam: the same commands, queries and pictures as the window, for scripts and tests.
+#include <pybind11/stl.h>
+
 #include "editor/import.h"
 #include "editor/new_project.h"
 #include "editor/python/project.h"
+#include "editor/settings.h"
+#include "runtime/frame/debug_views.h"
 
 namespace loam::python {
 
@@ -74,11 +78,29 @@ PYBIND11_MODULE(loam, module) {
     module.def(
         "open",
         [](const std::string& path, const std::string& device, bool read_only, bool validation,
-           const std::string& quality, const std::string& format) {
-            return std::make_unique<Project>(path, device, read_only, validation, quality, format);
+           const std::string& quality, const std::string& format, const py::dict& settings) {
+            return std::make_unique<Project>(path, device, read_only, validation, quality, format, settings);
         },
         "Opens a project.", py::arg("path"), py::arg("device") = "", py::arg("read_only") = false,
-        py::arg("validation") = false, py::arg("quality") = "", py::arg("format") = "");
+        py::arg("validation") = false, py::arg("quality") = "", py::arg("format") = "",
+        py::arg("settings") = py::dict());
+    module.def(
+        "settings",
+        [] {
+            loam::Json list = loam::Json::array();
+            for (const loam::SettingText& s : loam::list_settings({}))
+                list.push_back({{"name", s.name}, {"value", s.value}, {"range", s.range}, {"help", s.help}});
+            return to_python(list);
+        },
+        "The figures that open(settings={name: value}) changes, with their defaults.");
+    module.def(
+        "debug_views",
+        [] {
+            std::vector<std::string> names;
+            for (const loam::DebugViewInfo& view : loam::debug_views()) names.emplace_back(view.name);
+            return names;
+        },
+        "What render(debug=…) takes.");
     module.def(
         "verify",
         [](const std::string& path) { return to_python(loam::Json(unwrap(loam::Document::verify(path)))); },

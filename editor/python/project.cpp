@@ -6,6 +6,7 @@
 #include <pybind11/stl.h>
 
 #include "editor/choices.h"
+#include "editor/settings.h"
 #include "editor/settings_text.h"
 #include "editor/transitions.h"
 
@@ -49,7 +50,8 @@ py::object ray_cast(Project& p, const std::array<double, 3>& origin, const std::
 }
 
 py::array_t<uint8_t> render(Project& p, const py::object& camera, std::pair<int, int> size, bool reference,
-                            int supersample, const std::string& debug, double render_scale, int max_frames) {
+                            int supersample, const std::string& debug, double render_scale, int max_frames,
+                            const std::string& filter) {
     Session& session = p.session();
     RenderRequest request;
     request.camera = to_camera(camera, session);
@@ -63,6 +65,7 @@ py::array_t<uint8_t> render(Project& p, const py::object& camera, std::pair<int,
     request.max_frames = max_frames;
     request.frame.render_scale = static_cast<float>(render_scale);
     request.frame.debug = unwrap(parse_debug_view(debug));
+    request.frame.filter = unwrap(parse_filter(filter));
     Picture picture;
     {
         const py::gil_scoped_release release;
@@ -71,13 +74,28 @@ py::array_t<uint8_t> render(Project& p, const py::object& camera, std::pair<int,
     return to_numpy(picture);
 }
 
-void step(Project& p, const py::object& camera, int n, std::pair<int, int> size, double render_scale) {
+void step(Project& p, const py::object& camera, int n, std::pair<int, int> size, double render_scale,
+          bool moving, const std::string& debug) {
     Session& session = p.session();
     const Camera view = to_camera(camera, session);
     FrameSettings settings;
     settings.render_scale = static_cast<float>(render_scale);
+    settings.at_rest = !moving;
+    settings.debug = unwrap(parse_debug_view(debug));
     const py::gil_scoped_release release;
     unwrap(session.step(view, size.first, size.second, settings, n));
+}
+
+void set_quality(Project& p, const std::string& quality, const std::string& format) {
+    const Quality level = unwrap(parse_quality(quality));
+    std::optional<PageFormat> page_format;
+    if (!format.empty()) page_format = unwrap(parse_page_format(format));
+    unwrap(p.session().set_quality(level, page_format));
+}
+
+void announce(Project& p, const py::object& camera) {
+    Session& session = p.session();
+    unwrap(session.announce(camera.is_none() ? std::nullopt : std::optional(to_camera(camera, session))));
 }
 
 // A dict: "gbuffer" float16 (height, width, 4), "depth" float32 (height, width) or None.
@@ -295,13 +313,16 @@ void bind_queries(py::class_<Project>& c) {
 }  // namespace
 
 Project::Project(const std::string& path, const std::string& device, bool read_only, bool validation,
-                 const std::string& quality, const std::string& format) {
+                 const std::string& quality, const std::string& format, const py::dict& settings) {
     SessionDesc desc;
     desc.device.device_filter = device;
     desc.device.validation = validation;
     desc.mode = read_only ? OpenMode::read_only : OpenMode::read_write;
     if (!quality.empty()) desc.renderer.quality = unwrap(parse_quality(quality));
     if (!format.empty()) desc.renderer.page_format = unwrap(parse_page_format(format));
+    for (const auto& [name, value] : settings)
+        unwrap(change_setting(desc.renderer, py::str(name).cast<std::string>(),
+                              py::str(value).cast<std::string>()));
     session_ = unwrap(Session::open(path, desc));
 }
 
@@ -338,11 +359,19 @@ void bind_project(py::module_& module) {
     c.def("default_camera", [](Project& p) { return p.session().default_camera(); });
     c.def("step", &step, "Renders n frames without waiting for the picture to settle.",
           py::arg("camera") = py::none(), py::arg("n") = 1, py::arg("size") = std::pair(960, 540),
-          py::arg("render_scale") = 1.0);
+          py::arg("render_scale") = 1.0, py::arg("moving") = false, py::arg("debug") = "none");
+    c.def("set_quality", &set_quality,
+          "very_low, low, mid, high or ultra, and bc1 or rgba8 (default by device), from the next frames on: "
+          "the "
+          "picture keeps its texels until the new texture has them.",
+          py::arg("quality"), py::arg("format") = "");
+    c.def("announce", &announce,
+          "The camera will soon be there: its pages are made in the frames until then. None: no longer.",
+          py::arg("camera"));
     c.def("render", &render, "Renders until the picture rests; uint8 (height, width, 4), sRGB-encoded.",
           py::arg("camera") = py::none(), py::arg("size") = std::pair(960, 540), py::arg("reference") = false,
           py::arg("supersample") = 1, py::arg("debug") = "none", py::arg("render_scale") = 1.0,
-          py::arg("max_frames") = 600);
+          py::arg("max_frames") = 600, py::arg("filter") = "auto");
     c.def("ground_buffers", &ground_buffers,
           "What the ground pass of one more frame wrote: normal x, y and log2 footprints; depth.",
           py::arg("camera") = py::none(), py::arg("size") = std::pair(960, 540));

@@ -11,7 +11,7 @@ namespace loam::python {
 class Project {
   public:
     Project(const std::string& path, const std::string& device, bool read_only, bool validation,
-            const std::string& quality, const std::string& format);
+            const std::string& quality, const std::string& format, const py::dict& settings);
 
     [[nodiscard]] Session& session();  // raises once closed
     void close() { session_.reset(); }

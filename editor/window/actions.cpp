@@ -100,7 +100,7 @@ void App::run(std::string_view action, ui::Ui& ui) {
         return scene_changed();
     }
     if (action == "home") {
-        camera.set_camera(session.default_camera());
+        camera.jump_to(session.default_camera());
         return scene_changed();
     }
     if (action == "direct shading") {

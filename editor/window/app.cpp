@@ -155,6 +155,12 @@ void App::set_layer(int index) {
     if (index >= 0 && size_t(index) < layer_names.size()) tools.settings.layer = layer_names[size_t(index)];
 }
 
+void App::change_quality(Quality quality, PageFormat format) {
+    view.quality = quality;
+    view.page_format = format;
+    quality_changed_ = scene_changed_ = true;
+}
+
 void App::resize_brush(double factor) {
     if (tools.tool == Tool::footprints) {
         tools.settings.gait.length_m = std::clamp(tools.settings.gait.length_m * factor, 0.05, 5.0);

@@ -25,6 +25,8 @@ struct ViewSettings {
     bool adaptive = true;      // render scale follows the frame-time goal while things move
     double fixed_scale = 1.0;  // when not adaptive
     bool show_ring = true;
+    Quality quality = Quality::low;       // what the renderer has or is getting
+    PageFormat page_format = PageFormat::rgba8;
 };
 
 // What the window knows of the frames, for the status line.
@@ -83,6 +85,7 @@ class App {
     void set_tool(Tool tool);
     void set_layer(int index);
     [[nodiscard]] int layer() const; // of the paint tool, -1: none
+    void change_quality(Quality quality, PageFormat format); // of the virtual texture
     void resize_brush(double factor);
     void strengthen_brush(double factor);
     [[nodiscard]] const std::vector<HistoryStep>& history(); // oldest first
@@ -113,6 +116,7 @@ class App {
     [[nodiscard]] bool take_scene_changed() { return std::exchange(scene_changed_, false); }
     void scene_changed() { scene_changed_ = true; }
     [[nodiscard]] bool take_settings_changed() { return std::exchange(settings_changed_, false); }
+    [[nodiscard]] bool take_quality_changed() { return std::exchange(quality_changed_, false); }
     std::function<void(const Command&)> on_command; // after it was committed
 
   private:
@@ -127,7 +131,7 @@ class App {
     uint64_t history_revision_ = ~uint64_t{0};
     void read_layer_names();
 
-    bool scene_changed_ = true, settings_changed_ = false;
+    bool scene_changed_ = true, settings_changed_ = false, quality_changed_ = false;
 
     CameraInput::Drag drag_ = CameraInput::Drag::none;
     bool tool_drag_ = false;

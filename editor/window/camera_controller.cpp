@@ -33,10 +33,36 @@ void CameraController::set_camera(const Camera& camera) {
 void CameraController::stop() {
     velocity_m_s_ = glm::dvec3(0);
     flight_.reset();
+    jump_.reset();
+}
+
+void CameraController::jump_to(const Camera& camera) {
+    stop();
+    jump_ = Jump{.to = camera};
+}
+
+void CameraController::arrive() {
+    if (jump_) set_camera(Camera(jump_->to));
+}
+
+bool CameraController::advance_jump(double dt_s) {
+    if (!jump_) return false;
+    jump_->waited_s += dt_s;
+    if (jump_->waited_s >= kLongestWait_s) arrive();
+    return true;  // also while it waits: the frames until then make its pages
+}
+
+std::optional<Camera> CameraController::destination() const {
+    if (jump_) return jump_->to;
+    if (!flight_) return std::nullopt;
+    Camera there = camera_;
+    there.position_m = flight_->to_m;
+    there.pitch_rad = flight_->to_pitch;
+    return there;
 }
 
 bool CameraController::moving() const {
-    return flight_.has_value() || velocity_m_s_ != glm::dvec3(0);
+    return flight_.has_value() || jump_.has_value() || velocity_m_s_ != glm::dvec3(0);
 }
 
 double CameraController::height_above_ground_m() const {
@@ -73,6 +99,7 @@ void CameraController::pan(const CameraInput& input) {
 
 void CameraController::zoom(const CameraInput& input) {
     flight_.reset();
+    jump_.reset();
     const glm::dvec3 ray =
         camera_.ray(input.cursor_px.x, input.cursor_px.y, input.picture_px.x, input.picture_px.y);
     const double distance = input.under_cursor ? glm::length(*input.under_cursor - camera_.position_m)
@@ -97,6 +124,7 @@ bool CameraController::fly(const CameraInput& input) {
 
 void CameraController::frame(glm::dvec3 target_m, double radius_m) {
     velocity_m_s_ = glm::dvec3(0);
+    jump_.reset();
     // From the side it is seen now, but never along the ground.
     const double pitch = std::min(camera_.pitch_rad, -0.45);
     Camera there = camera_;
@@ -136,7 +164,7 @@ bool CameraController::update(const CameraInput& input) {
     if (input.drag != drag_) {
         drag_ = input.drag;
         pivot_m_ = input.under_cursor.value_or(point_ahead());
-        if (drag_ != CameraInput::Drag::none) flight_.reset();
+        if (drag_ != CameraInput::Drag::none) flight_.reset(), jump_.reset();
     }
     if (drag_ != CameraInput::Drag::none && input.moved_px != glm::dvec2(0)) {
         if (drag_ == CameraInput::Drag::look) look(input.moved_px);
@@ -154,6 +182,7 @@ bool CameraController::update(const CameraInput& input) {
     }
     moved = fly(input) || moved;
     moved = advance_flight(input.dt_s) || moved;
+    moved = advance_jump(input.dt_s) || moved;
     // An edit may have raised the ground under a resting camera.
     return rise_above_ground() || moved;
 }

@@ -41,6 +41,11 @@ class CameraController {
     void set_camera(const Camera& camera);
     // Flies to a place from which `radius_m` around `target` fills a good part of the picture.
     void frame(glm::dvec3 target_m, double radius_m);
+    // Jumps there, once arrive() says that all is ready or after kLongestWait_s.
+    void jump_to(const Camera& camera);
+    void arrive();
+    // Where a flight or a jump ends; nothing while the camera is steered or rests.
+    [[nodiscard]] std::optional<Camera> destination() const;
     void stop();
 
     bool keep_above_ground = true;
@@ -48,6 +53,7 @@ class CameraController {
     [[nodiscard]] double speed_m_s() const;                             // without `fast`
 
     static constexpr double kClearance_m = 0.3;
+    static constexpr double kLongestWait_s = 0.4; // longer and the key seems to do nothing
 
   private:
     void look(glm::dvec2 moved_px);
@@ -56,6 +62,7 @@ class CameraController {
     void zoom(const CameraInput& input);
     bool fly(const CameraInput& input);
     bool advance_flight(double dt_s);
+    bool advance_jump(double dt_s);
     bool rise_above_ground();
     [[nodiscard]] double height_above_ground_m() const;
     [[nodiscard]] glm::dvec3 point_ahead() const; // stands in for the ground when the cursor is on the sky
@@ -71,6 +78,11 @@ class CameraController {
         double from_pitch, to_pitch, at_s = 0;
     };
     std::optional<Flight> flight_;
+    struct Jump {
+        Camera to;
+        double waited_s = 0;
+    };
+    std::optional<Jump> jump_;
 };
 
 } // namespace loam::window

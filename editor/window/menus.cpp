@@ -1,13 +1,9 @@
-#include <array>
-
+#include "editor/choices.h"
 #include "editor/window/panels.h"
 
 namespace loam::window {
 
 namespace {
-
-constexpr std::array kDebugViews = {DebugView::none,      DebugView::mips,    DebugView::sectors, DebugView::normals,
-                                    DebugView::occlusion, DebugView::indirection, DebugView::shadow, DebugView::albedo};
 
 void action_item(App& app, ui::Ui& ui, std::string_view label, std::string_view action, ui::Icon icon = ui::Icon::none,
                  bool enabled = true, bool checked = false) {
@@ -48,6 +44,20 @@ void resolution_items(App& app, ui::Ui& ui) {
     }
 }
 
+// The size of the virtual texture and the format of its pages: the picture keeps its texels until the new ones are made.
+void quality_items(App& app, ui::Ui& ui) {
+    for (const QualityName& level : quality_names()) {
+        const std::string label = fmt::format("Texture quality: {}", level.title);
+        if (ui::menu_item(ui, {.label = label, .checked = app.view.quality == level.quality}))
+            app.change_quality(level.quality, app.view.page_format);
+    }
+    for (const PageFormatName& format : page_format_names()) {
+        const std::string label = fmt::format("Texture pages: {}", format.title);
+        if (ui::menu_item(ui, {.label = label, .checked = app.view.page_format == format.format}))
+            app.change_quality(app.view.quality, format.format);
+    }
+}
+
 void view_menu(App& app, ui::Ui& ui) {
     action_item(app, ui, "Whole map", "home");
     action_item(app, ui, "Frame the spot under the cursor", "frame");
@@ -60,10 +70,16 @@ void view_menu(App& app, ui::Ui& ui) {
     if (ui::menu_item(ui, {.label = "Brush outline", .checked = app.view.show_ring}))
         app.view.show_ring = !app.view.show_ring;
     ui::menu_separator(ui);
-    for (const DebugView debug : kDebugViews) {
-        if (!ui::menu_item(ui, {.label = debug_view_title(debug), .checked = app.view.debug == debug})) continue;
-        app.view.debug = debug;
-        app.scene_changed();
+    quality_items(app, ui);
+}
+
+void debug_menu(App& app, ui::Ui& ui) {
+    for (const DebugViewInfo& debug : debug_views()) {
+        if (ui::menu_item(ui, {.label = debug.title, .checked = app.view.debug == debug.view})) {
+            app.view.debug = debug.view;
+            app.scene_changed();
+        }
+        if (debug.view == DebugView::none || debug.view == DebugView::heights) ui::menu_separator(ui);
     }
 }
 
@@ -80,26 +96,13 @@ void tools_menu(App& app, ui::Ui& ui) {
 
 } // namespace
 
-std::string_view debug_view_title(DebugView view) {
-    switch (view) {
-        case DebugView::none: return "Final picture";
-        case DebugView::mips: return "Page mips";
-        case DebugView::sectors: return "Sectors";
-        case DebugView::normals: return "Normals";
-        case DebugView::occlusion: return "Ambient occlusion";
-        case DebugView::indirection: return "Indirection";
-        case DebugView::shadow: return "Shadow";
-        case DebugView::albedo: return "Albedo";
-    }
-    return "Final picture";
-}
-
 void build_menus(App& app, ui::Ui& ui) {
     auto top = ui::panel(ui, "menus", {.edge = ui::Edge::top, .size = 32, .horizontal = true, .padding = 4});
     auto bar = ui::menu_bar(ui);
     if (auto menu = ui::menu(ui, "File")) file_menu(app, ui);
     if (auto menu = ui::menu(ui, "Edit")) edit_menu(app, ui);
     if (auto menu = ui::menu(ui, "View")) view_menu(app, ui);
+    if (auto menu = ui::menu(ui, "Debug")) debug_menu(app, ui);
     if (auto menu = ui::menu(ui, "Tools")) tools_menu(app, ui);
     if (auto menu = ui::menu(ui, "Help")) action_item(app, ui, "Keyboard and mouse", "shortcuts", ui::Icon::info);
 }

@@ -17,6 +17,7 @@ void build_dialogs(App& app, ui::Ui& ui);
 void draw_ring(App& app, ui::Ui& ui, const ui::Rect& viewport);
 
 [[nodiscard]] ui::Icon tool_icon(Tool tool);
-[[nodiscard]] std::string_view debug_view_title(DebugView view);
+// What the colours of a debug view mean, over the foot of the picture.
+void draw_legend(App& app, ui::Ui& ui, const ui::Rect& viewport);
 
 } // namespace loam::window

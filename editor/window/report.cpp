@@ -45,6 +45,12 @@ void Report::message(const std::string& text) {
     print({{"event", "message"}, {"text", text}});
 }
 
+void Report::texture(std::string_view quality, uint32_t pages) {
+    if (!enabled_ || pages == texture_pages_) return;
+    texture_pages_ = pages;
+    print({{"event", "texture"}, {"quality", quality}, {"pages", pages}});
+}
+
 void Report::motion_ends(float scale, std::span<const gpu::PassTime> passes) {
     if (motion_ms_.empty()) return;
     std::sort(motion_ms_.begin(), motion_ms_.end());

@@ -31,7 +31,7 @@ Status show_word(Platform& platform, Presenter& presenter, ui::Ui& ui, const std
 }
 
 Result<Screen> open_screen(Platform& platform, const WindowOptions& options, const std::filesystem::path& project) {
-    SessionDesc desc{.device = options.device};
+    SessionDesc desc{.device = options.device, .renderer = options.renderer};
     desc.device.present = true;
     desc.device.validation = desc.device.validation || options.validation;
     desc.device.instance_extensions = Platform::instance_extensions();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "runtime/frame/renderer.h"
 #include "runtime/gpu/device.h"
 
 namespace loam {
@@ -11,6 +12,7 @@ namespace loam {
 struct WindowOptions {
     std::filesystem::path project;
     gpu::DeviceDesc device;
+    RendererDesc renderer;
     int width = 1280, height = 800;                  // of the window, in screen units
     std::filesystem::path record;                    // every command is appended here; empty: no recording
     std::optional<std::filesystem::path> shader_dir; // shaders are read from here and reloaded when a file changes

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "editor/choices.h"
 #include "editor/window/panels.h"
 #include "runtime/gpu/shader_library.h"
 
@@ -13,6 +14,7 @@ namespace {
 
 constexpr double kShortestFrame_s = 1.0 / 60;  // FIFO does not throttle on every display server
 constexpr double kShaderPoll_s = 0.5;
+constexpr int kAnnouncedAnswer = 6;            // frames until the feedback of an announced place has come
 constexpr double kLongestStep_s = 0.1;         // of the clock that moves cameras and strokes, after a stall
 
 RenderScaleDesc scale_desc(gpu::Profile profile) {
@@ -34,6 +36,8 @@ WindowLoop::WindowLoop(const LoopParts& parts)
       started_s_(parts.started_s),
       scale_(scale_desc(parts.session.device()->caps().profile)) {
     app_.frame.device = session_.device()->caps().name;
+    app_.view.quality = renderer_.quality();
+    app_.view.page_format = renderer_.page_format();
     app_.on_command = [this](const Command& command) { report_.command(command); };
     if (options_.shader_dir) session_.device()->shaders().watch(*options_.shader_dir);
     last_iteration_s_ = platform_.now_s();
@@ -78,6 +82,7 @@ const ui::FrameOutput& WindowLoop::build(double now_s, double dt_s, std::span<co
     const ui::ViewportResponse response = ui::viewport(ui_, "viewport");
     app_.viewport_input(ui_, response, dt_s);
     draw_ring(app_, ui_, response.rect);
+    draw_legend(app_, ui_, response.rect);
     build_dialogs(app_, ui_);
     if (!(response.rect == viewport_)) app_.scene_changed();
     viewport_ = response.rect;
@@ -109,6 +114,7 @@ Status WindowLoop::iterate() {
         LOAM_TRY(renderer_.settings_changed(*session_.ring()));
         LOAM_TRY(add_layer_pictures());
     }
+    if (app_.take_quality_changed()) change_quality();
     if (app_.take_scene_changed()) pacer_.changed(now);
     pacer_.advance(now);
     const bool draw_now = out.picture_changed || exposed || resized || pacer_.due();
@@ -123,7 +129,7 @@ Status WindowLoop::iterate() {
 
 FrameSettings WindowLoop::frame_settings() const {
     const bool moving = pacer_.phase() == FramePacer::Phase::moving;
-    FrameSettings settings{.shading = app_.view.shading, .debug = app_.view.debug, .fine_filter = !moving};
+    FrameSettings settings{.shading = app_.view.shading, .debug = app_.view.debug, .at_rest = !moving};
     if (moving) settings.render_scale = app_.view.adaptive ? scale_.scale() : float(app_.view.fixed_scale);
     return settings;
 }
@@ -146,6 +152,7 @@ Status WindowLoop::draw(const ui::FrameOutput& out, double now_s) {
                      .settings = frame_settings(),
                      .draw = pacer_.due(),
                      .viewport = viewport_};
+    if (scene.draw) announce();
     next_frame_s_ = now_s + kShortestFrame_s;
     auto drawn = presenter_.draw(size_px_, *out.draw, ui_.text().atlas(), ui_.theme.window, scene);
     if (!drawn) return drawn.error();
@@ -162,6 +169,7 @@ Status WindowLoop::draw(const ui::FrameOutput& out, double now_s) {
         app_.frame.render_scale = scene.settings.render_scale;
         app_.frame.pages_pending = renderer_.pending_pages();
         pacer_.drawn(renderer_.settled());
+        report_.texture(quality_name(renderer_.quality()).name, renderer_.statistics().texture.capacity_pages);
         if (!drew_moving_) report_.motion_ends(scale_.scale(), session_.ring()->pass_times());
     }
     if (!ready_ && pacer_.phase() != FramePacer::Phase::moving) {
@@ -175,6 +183,25 @@ Status WindowLoop::draw(const ui::FrameOutput& out, double now_s) {
     }
     if (resting && !build_again_) report_.idle(redraws(), app_.frame.scene_frames);
     return {};
+}
+
+void WindowLoop::change_quality() {
+    if (const Status changed = session_.set_quality(app_.view.quality, app_.view.page_format); !changed)
+        app_.fail(changed.message());
+    app_.view.quality = renderer_.quality();
+    app_.view.page_format = renderer_.page_format();
+    build_again_ = true; // the menu's check marks
+}
+
+// Where the camera will be in a moment: its pages are made now. A jump waits for them, but not for long.
+void WindowLoop::announce() {
+    const std::optional<Camera> there = app_.camera.destination();
+    announced_frames_ = there ? announced_frames_ + 1 : 0;
+    renderer_.announce(there);
+    if (!there || announced_frames_ < kAnnouncedAnswer) return;
+    if (renderer_.statistics().texture.announced_missing > 0) return;
+    app_.camera.arrive();
+    app_.scene_changed();
 }
 
 Status WindowLoop::add_layer_pictures() {

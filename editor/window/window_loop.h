@@ -37,6 +37,8 @@ class WindowLoop {
     const ui::FrameOutput& build(double now_s, double dt_s, std::span<const ui::Event> events);
     Status draw(const ui::FrameOutput& out, double now_s);
     FrameSettings frame_settings() const;
+    void change_quality();
+    void announce();
     Status add_layer_pictures(); // of layers that are new since the last call
     Status export_picture();
     Status poll_shaders(double now_s);
@@ -58,6 +60,7 @@ class WindowLoop {
     double last_iteration_s_ = 0, waited_s_ = 0, next_frame_s_ = 0, wake_s_ = 0, next_poll_s_ = 0;
     std::vector<std::string> pictured_layers_;
     bool build_again_ = true, ready_ = false, drew_moving_ = false;
+    int announced_frames_ = 0;
     glm::uvec2 size_px_{0};
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "shaders/geometry/pixel_ellipse_math.h"
+
 namespace loam {
 
 namespace {
@@ -27,7 +29,8 @@ void cmd_prepass(gpu::Commands& commands, TerrainPass& terrain, FrameTargets& ta
                                                 {targets.occlusion, Access::color_target},
                                                 {heights.heights(), Access::vertex_read},
                                                 {heights.normals(), Access::fragment_sampled}});
-    const gpu::ColorTarget colors[] = {{targets.gbuffer.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}},
+    constexpr VkClearColorValue no_ground{{0, 0, kNoGroundLog2, kNoGroundLog2}};
+    const gpu::ColorTarget colors[] = {{targets.gbuffer.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, no_ground},
                                        {targets.occlusion.view(), VK_ATTACHMENT_LOAD_OP_CLEAR, {}}};
     commands.begin_rendering(
         {size.x, size.y}, colors,

@@ -1,21 +1,50 @@
 // What a frame is asked to look like; the same for the window, the command line and benches.
 #pragma once
 
+#include <optional>
+
 #include <glm/vec2.hpp>
+
+#include "runtime/texture/filter.h"
 
 namespace loam {
 
 // direct: the reference's per-pixel evaluation; direct_texels: the same at the texels that pages would have,
 // trilinear between them, so that only paging is between it and the virtual texture.
 enum class Shading { virtual_texture, direct, direct_texels };
-// mips: of the page shown; indirection: the texel as a colour. Numbered as in shaders/frame/debug_view.glsl.
-enum class DebugView { none, mips, sectors, normals, occlusion, indirection, shadow, albedo };
+// Numbered as in shaders/frame/debug_io.h; what each shows: debug_views.h.
+enum class DebugView {
+    none,
+    mips,
+    sectors,
+    normals,
+    occlusion,
+    indirection,
+    shadow,
+    albedo,
+    wanted,
+    coarser,
+    age,
+    requests,
+    dirt,
+    cost,
+    decals,
+    heights,
+    atlas,
+    indirection_map,
+    count
+};
 
 struct FrameSettings {
     Shading shading = Shading::virtual_texture;
     DebugView debug = DebugView::none;
     float render_scale = 1.0f;  // share of the picture's width and height that is shaded
-    bool fine_filter = true;    // trilinear between page mips and so on; off while moving on software devices
+    // Nothing moves and nobody works: no frame time is kept, so that shadows are exact and every pixel gets
+    // its page.
+    bool at_rest = true;
+    std::optional<Filter>
+        filter;  // of the virtual texture; none: what the device does best at rest, cheaply in motion
+    int most_taps = kMaxTaps;  // anisotropic_tiles: 2, 4 or 8
     glm::dvec2 jitter_px{0, 0};
     float footprint_bias = 0;  // direct shading: log2, negative leaves filtering to supersampling
     int page_budget = -1;      // overrides RendererDesc::page_budget when >= 0

@@ -3,12 +3,15 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstring>
 
 #include "runtime/base/check.h"
 #include "runtime/frame/announced_view.h"
+#include "runtime/frame/debug_views.h"
 #include "runtime/frame/resolve_pass.h"
 #include "runtime/frame/sector_distances.h"
 #include "runtime/frame/targets.h"
+#include "runtime/frame/texture_swap.h"
 #include "runtime/geometry/patch_tree.h"
 #include "runtime/geometry/terrain_pass.h"
 #include "runtime/maps/height_map.h"
@@ -34,11 +37,14 @@ struct ProfileDefaults {
     double split_distance;
     uint32_t shadow_texels;
     int shadow_budget;  // cascades drawn a frame
+    Filter moving, resting;
 };
 
 ProfileDefaults profile_defaults(gpu::Profile profile) {
-    if (profile == gpu::Profile::software) return {PageFormat::rgba8, 2, 12, 4, 2.4, 1024, 1};
-    return {PageFormat::bc1x3, 12, 48, 16, 4.0, 2048, 4};
+    if (profile == gpu::Profile::software)
+        return {PageFormat::rgba8, 2, 12, 4, 2.4, 1024, 1, Filter::bilinear, Filter::anisotropic_tiles};
+    return {PageFormat::bc1x3,           12, 48, 16, 4.0, 2048, 4, Filter::anisotropic_hardware,
+            Filter::anisotropic_hardware};
 }
 
 int pages_per_side(Quality quality) {
@@ -82,7 +88,7 @@ struct Renderer::Impl {
     std::unique_ptr<HeightMap> heights;
     std::unique_ptr<IndexMap> indices;
     std::unique_ptr<LayerSet> layers;
-    std::unique_ptr<VirtualTexture> texture;
+    TextureSwap textures;
     std::unique_ptr<TerrainPass> terrain;
     std::unique_ptr<ShadowCascades> shadows;
     FrameTargets targets;
@@ -101,14 +107,34 @@ struct Renderer::Impl {
     std::vector<gpu::PassTime> pass_times;  // of the newest finished frame
     gpu::UploadSlice decals;                // of direct shading, this frame's
     bool has_decals = false;
+    gpu::UploadSlice facts, squares;        // of debug views, this frame's
     shared::FrameUniforms last_uniforms{};  // for resolve_again
 
     Status create_texture(gpu::FrameRing& ring);
+    [[nodiscard]] PageFormat page_format() const;
+    [[nodiscard]] VirtualTextureDesc texture_desc() const;
+    [[nodiscard]] TextureSources texture_sources() { return {device, document, *indices, *layers}; }
+    [[nodiscard]] VirtualTexture& texture() { return textures.shown(); }
+    [[nodiscard]] const VirtualTexture& texture() const { return textures.shown(); }
+    // The settings with the device's own filter where they name none.
+    [[nodiscard]] FrameSettings with_filter(FrameSettings settings) const {
+        if (!settings.filter) settings.filter = settings.at_rest ? defaults.resting : defaults.moving;
+        // The software device's sampler weighs texels far outside the footprint, those of other pages too, and
+        // takes twelve times as long as one tap.
+        const bool no_hardware =
+            device.caps().profile == gpu::Profile::software || device.caps().max_anisotropy < kProbeTaps;
+        if (*settings.filter == Filter::anisotropic_hardware && no_hardware)
+            settings.filter = Filter::anisotropic_tiles;
+        return settings;
+    }
     [[nodiscard]] shared::FrameUniforms uniforms(const Camera& camera, glm::uvec2 size,
                                                  const FrameSettings& settings) const;
     void request_direct_pages(double pixels_per_radian, double footprint_bias);
     void upload_direct_decals(gpu::FrameRing& ring, double pixels_per_radian, double footprint_bias);
     Status announced_feedback(gpu::FrameRing& ring, gpu::Commands& commands, const FrameSettings& settings);
+    void upload_debug(gpu::FrameRing& ring, DebugView view);
+    Status cmd_heights_view(gpu::Commands& commands, const gpu::UploadSlice& uniform_slice,
+                            const FrameSettings& settings);
     [[nodiscard]] double speed_m_s(const Camera& camera, double seconds);
     [[nodiscard]] ResolveInputs resolve_inputs(const gpu::UploadSlice& uniform_slice);
 };
@@ -136,25 +162,58 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::Fra
     auto shadows = ShadowCascades::create(device, desc.shadows ? r.defaults.shadow_texels : 1);
     if (!shadows) return shadows.error();
     r.shadows = std::make_unique<ShadowCascades>(std::move(*shadows));
-    auto resolve = ResolvePass::create(device, *r.layers, r.texture->textures());
+    auto resolve =
+        ResolvePass::create(device, *r.layers, r.texture().textures(), r.defaults.moving, r.defaults.resting);
     if (!resolve) return resolve.error();
     r.resolve = std::make_unique<ResolvePass>(std::move(*resolve));
     return renderer;
 }
 
+PageFormat Renderer::Impl::page_format() const {
+    const PageFormat format = desc.page_format.value_or(defaults.page_format);
+    return is_compressed(format) && !device.caps().bc ? PageFormat::rgba8 : format;
+}
+
+VirtualTextureDesc Renderer::Impl::texture_desc() const {
+    VirtualTextureDesc wanted = desc.texture;
+    wanted.format = page_format();
+    if (wanted.pages_per_side == 0) wanted.pages_per_side = pages_per_side(desc.quality);
+    if (wanted.indirection_size == 0) wanted.indirection_size = desc.quality >= Quality::high ? 1024 : 512;
+    if (wanted.budget_pages == 0) wanted.budget_pages = defaults.page_budget;
+    return wanted;
+}
+
 Status Renderer::Impl::create_texture(gpu::FrameRing& ring) {
     auto set = LayerSet::create(ring, document);
     if (!set) return set.error();
-    texture.reset();
+    textures.clear();
     layers = std::move(*set);
-    VirtualTextureDesc wanted{.pages_per_side = pages_per_side(desc.quality),
-                              .indirection_size = desc.quality >= Quality::high ? 1024 : 512,
-                              .format = desc.page_format.value_or(defaults.page_format),
-                              .budget_pages = desc.page_budget > 0 ? desc.page_budget : defaults.page_budget};
-    auto made = VirtualTexture::create(device, document, *indices, *layers, wanted);
-    if (!made) return made.error();
-    texture = std::move(*made);
-    return {};
+    return textures.replace(texture_sources(), texture_desc());
+}
+
+Status Renderer::set_quality(Quality quality, std::optional<PageFormat> page_format) {
+    Impl& r = *impl_;
+    const RendererDesc before = r.desc;
+    r.desc.quality = quality;
+    r.desc.page_format = page_format;
+    r.desc.texture.pages_per_side = r.desc.texture.indirection_size = 0;
+    const VirtualTextureDesc wanted = r.texture_desc(), &shown = r.texture().desc();
+    r.changed = true;
+    if (wanted.pages_per_side == shown.pages_per_side && wanted.indirection_size == shown.indirection_size &&
+        wanted.format == shown.format) {
+        r.textures.cancel();
+        return {};
+    }
+    const Status made = r.textures.prepare(r.texture_sources(), wanted);
+    if (!made) r.desc = before;
+    return made;
+}
+
+Quality Renderer::quality() const {
+    return impl_->desc.quality;
+}
+PageFormat Renderer::page_format() const {
+    return impl_->page_format();
 }
 
 Status Renderer::settings_changed(gpu::FrameRing& ring) {
@@ -168,7 +227,7 @@ Status Renderer::settings_changed(gpu::FrameRing& ring) {
     if (r.layers->ground == settings.ground && r.layers->entries == settings.layers) return {};
     LOAM_TRY(r.layers->take_settings(ring, settings));
     r.resolve->take_settings();
-    return r.texture->take_settings();
+    return r.textures.take_settings();
 }
 
 shared::FrameUniforms Renderer::Impl::uniforms(const Camera& camera, glm::uvec2 size,
@@ -231,13 +290,46 @@ void Renderer::Impl::upload_direct_decals(gpu::FrameRing& ring, double pixels_pe
 ResolveInputs Renderer::Impl::resolve_inputs(const gpu::UploadSlice& uniform_slice) {
     return {.targets = targets,
             .shadows = *shadows,
-            .texture = *texture,
+            .texture = texture(),
             .indices = *indices,
             .layers = *layers,
             .size = picture_size,
             .uniforms = uniform_slice,
             .decals = decals,
-            .has_decals = has_decals};
+            .has_decals = has_decals,
+            .facts = facts,
+            .squares = squares};
+}
+
+void Renderer::Impl::upload_debug(gpu::FrameRing& ring, DebugView view) {
+    const auto upload = [&](const auto& values) {
+        const gpu::UploadSlice slice = ring.upload(values.size() * sizeof(values[0]));
+        std::memcpy(slice.data, values.data(), slice.size_bytes);
+        return slice;
+    };
+    using DecalCount = VirtualTexture::DecalCount;
+    facts = upload(texture().place_facts(view == DebugView::decals ? DecalCount::counted : DecalCount::none));
+    std::vector<shared::VtImageSquare> images = texture().image_squares();
+    images.push_back({});  // ends the list
+    squares = upload(images);
+}
+
+// The sky, and the ground by the levels of its height pages.
+Status Renderer::Impl::cmd_heights_view(gpu::Commands& commands, const gpu::UploadSlice& uniform_slice,
+                                        const FrameSettings& settings) {
+    LOAM_TRY(resolve->cmd_record(commands, resolve_inputs(uniform_slice), settings, ResolvePart::sky));
+    const auto pass = commands.pass("height levels", {{targets.picture, Access::color_target},
+                                                      {targets.depth, Access::depth_sampled},
+                                                      {heights->heights(), Access::vertex_read},
+                                                      {heights->normals(), Access::fragment_sampled}});
+    const gpu::ColorTarget colors[] = {{targets.picture.view(), VK_ATTACHMENT_LOAD_OP_LOAD, {}}};
+    commands.begin_rendering({picture_size.x, picture_size.y}, colors,
+                             {.view = targets.depth.view(), .has_stencil = true, .read_only = true});
+    commands.set_viewport(0, 0, float(picture_size.x), float(picture_size.y));
+    LOAM_TRY(
+        terrain->cmd_draw_levels(commands, patches, *heights, last_uniforms.clip_from_rel, kPictureFormat));
+    commands.end_rendering();
+    return {};
 }
 
 void Renderer::on_dirt(const Dirt& dirt) {
@@ -246,8 +338,7 @@ void Renderer::on_dirt(const Dirt& dirt) {
     r.heights->on_dirt(dirt.height);
     r.shadows->on_dirt(dirt.height);
     r.indices->on_dirt(dirt.index);
-    r.texture->on_index_dirt(dirt.index);
-    r.texture->on_dirt(dirt.texture);
+    r.textures.on_dirt(dirt.index, dirt.texture);
 }
 
 void Renderer::announce(const std::optional<Camera>& camera) {
@@ -271,14 +362,14 @@ Status Renderer::Impl::announced_feedback(gpu::FrameRing& ring, gpu::Commands& c
     const gpu::UploadSlice slice = ring.upload(sizeof(u));
     *slice.as<shared::FrameUniforms>() = u;
     cmd_prepass(commands, *terrain, a.targets, *heights, a.patches, a.size, u.clip_from_rel);
-    return texture->record_feedback(ring, commands,
-                                    {.depth = a.targets.depth,
-                                     .gbuffer = a.targets.gbuffer,
-                                     .uniforms = *slice.buffer,
-                                     .uniforms_offset = slice.offset,
-                                     .picture_px = a.size,
-                                     .eye = Eye::announced,
-                                     .footprint_log2 = a.footprint_log2});
+    return texture().record_feedback(ring, commands,
+                                     {.depth = a.targets.depth,
+                                      .gbuffer = a.targets.gbuffer,
+                                      .uniforms = *slice.buffer,
+                                      .uniforms_offset = slice.offset,
+                                      .picture_px = a.size,
+                                      .eye = Eye::announced,
+                                      .footprint_log2 = a.footprint_log2});
 }
 
 // Smoothed over a few frames; a jump is no speed.
@@ -292,8 +383,9 @@ double Renderer::Impl::speed_m_s(const Camera& camera, double seconds) {
 
 // The frame, top to bottom.
 Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Camera& camera,
-                        glm::uvec2 extent, const FrameSettings& settings) {
+                        glm::uvec2 extent, const FrameSettings& wanted) {
     Impl& r = *impl_;
+    const FrameSettings settings = r.with_filter(wanted);
     ++r.frame;
     r.pass_times.assign(ring.pass_times().begin(), ring.pass_times().end());
     const auto now = std::chrono::steady_clock::now();
@@ -319,12 +411,12 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
                                     .hidden_share = kHiddenShare});
     const double pixels_per_radian = size.y * 0.5 / std::tan(camera.fov_y_rad * 0.5);
     std::vector<SectorDistance> near =
-        sector_distances(r.patches, *r.heights, r.texture->live_radius_m(pixels_per_radian, 0));
+        sector_distances(r.patches, *r.heights, r.texture().live_radius_m(pixels_per_radian, 0));
     if (r.announced) {
         r.announced->prepare(*r.heights, extent, split);
         const double there = extent.y * 0.5 / std::tan(r.announced->camera.fov_y_rad * 0.5);
         std::vector<SectorDistance> far =
-            sector_distances(r.announced->patches, *r.heights, r.texture->live_radius_m(there, 0));
+            sector_distances(r.announced->patches, *r.heights, r.texture().live_radius_m(there, 0));
         for (SectorDistance& s : far) s.distance_m *= pixels_per_radian / there;
         merge_nearer(near, far);
     }
@@ -336,19 +428,20 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
         .announced_m = r.announced ? std::optional(r.announced->camera.position_m) : std::nullopt,
         .frame = r.frame,
         .same_since = r.view_frame,
-        .still = settings.fine_filter,
+        .still = settings.at_rest,
+        .filter = filter_rule(*settings.filter, settings.most_taps),
         .budget_pages = settings.page_budget,
-        // The coarse filter is for motion and work: then frames are waited for.
-        .goal_ms = settings.fine_filter ? 0.0 : kFrameGoal_ms,
+        // In motion and work frames are waited for.
+        .goal_ms = settings.at_rest ? 0.0 : kFrameGoal_ms,
         .last_frame_ms = last_frame_ms};
-    r.texture->request_inputs(view);
+    r.textures.request_inputs(view, settings.shading == Shading::virtual_texture);
     if (settings.shading != Shading::virtual_texture) {
         r.request_direct_pages(view.pixels_per_radian, settings.footprint_bias);
         r.upload_direct_decals(ring, view.pixels_per_radian, settings.footprint_bias);
     }
     LOAM_TRY(r.heights->update(ring, commands, r.frame, r.defaults.height_pages));
     LOAM_TRY(r.indices->update(ring, commands, r.frame, r.defaults.index_pages));
-    LOAM_TRY(r.texture->update(ring, commands, view));
+    LOAM_TRY(r.textures.update(ring, commands, view));
     if (r.announced && settings.shading == Shading::virtual_texture)
         LOAM_TRY(r.announced_feedback(ring, commands, settings));
     LOAM_TRY(r.terrain->upload(ring, commands, r.patches));
@@ -358,7 +451,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
         LOAM_TRY(r.shadows->update(commands, *r.terrain, r.patches, *r.heights, camera.position_m,
                                    sun_direction({.azimuth_rad = r.document.settings().sun_azimuth_rad,
                                                   .elevation_rad = r.document.settings().sun_elevation_rad}),
-                                   r.defaults.shadow_budget, settings.fine_filter, u));
+                                   r.defaults.shadow_budget, settings.at_rest, u));
 
     const gpu::UploadSlice slice = ring.upload(sizeof(u));
     *slice.as<shared::FrameUniforms>() = u;
@@ -367,21 +460,25 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     cmd_prepass(commands, *r.terrain, r.targets, *r.heights, r.patches, size, u.clip_from_rel);
     // Which pages the picture would like to have.
     if (settings.shading == Shading::virtual_texture)
-        LOAM_TRY(r.texture->record_feedback(ring, commands,
+        LOAM_TRY(r.textures.record_feedback(ring, commands,
                                             {.depth = r.targets.depth,
                                              .gbuffer = r.targets.gbuffer,
                                              .uniforms = *slice.buffer,
                                              .uniforms_offset = slice.offset,
                                              .picture_px = size}));
     // Sky, then the terrain's pixels from the virtual texture.
-    LOAM_TRY(r.resolve->cmd_record(commands, r.resolve_inputs(slice), settings, ResolvePart::all));
     r.last_uniforms = u;
+    if (settings.debug != DebugView::none) r.upload_debug(ring, settings.debug);
+    if (settings.debug == DebugView::heights)
+        LOAM_TRY(r.cmd_heights_view(commands, slice, settings));
+    else
+        LOAM_TRY(r.resolve->cmd_record(commands, r.resolve_inputs(slice), settings, ResolvePart::all));
     commands.use({{r.targets.picture, Access::fragment_sampled}});
 
     const bool asked = settings.shading != Shading::virtual_texture ||
-                       (r.texture->settled() && r.texture->last_feedback_frame() >= r.view_frame);
-    r.settled = !r.changed && asked && !r.heights->has_work() && !r.indices->has_work() &&
-                (!r.desc.shadows || r.shadows->settled());
+                       (r.texture().settled() && r.texture().last_feedback_frame() >= r.view_frame);
+    r.settled = !r.changed && asked && !r.textures.pending() && !r.heights->has_work() &&
+                !r.indices->has_work() && (!r.desc.shadows || r.shadows->settled());
     r.changed = false;
     return {};
 }
@@ -391,7 +488,7 @@ Status Renderer::resolve_again(gpu::FrameRing& ring, gpu::Commands& commands, co
     Impl& r = *impl_;
     const gpu::UploadSlice slice = ring.upload(sizeof(r.last_uniforms));
     *slice.as<shared::FrameUniforms>() = r.last_uniforms;
-    return r.resolve->cmd_record(commands, r.resolve_inputs(slice), settings,
+    return r.resolve->cmd_record(commands, r.resolve_inputs(slice), r.with_filter(settings),
                                  probe == ResolveProbe::floor ? ResolvePart::floor : ResolvePart::ground);
 }
 
@@ -404,6 +501,9 @@ glm::uvec2 Renderer::picture_size() const {
 gpu::Image& Renderer::gbuffer() {
     return impl_->targets.gbuffer;
 }
+FilterTiles& Renderer::filter_tiles() {
+    return impl_->resolve->tiles();
+}
 gpu::Image& Renderer::depth() {
     return impl_->targets.depth;
 }
@@ -412,7 +512,7 @@ bool Renderer::settled() const {
 }
 
 uint32_t Renderer::pending_pages() const {
-    const auto t = impl_->texture->statistics();
+    const auto t = impl_->texture().statistics();
     return t.missing_pages + t.dirty_pages + (impl_->heights->has_work() ? 1 : 0) +
            (impl_->indices->has_work() ? 1 : 0);
 }
@@ -442,7 +542,7 @@ FrameStatistics Renderer::statistics() const {
     r.heights->map().for_each_resident([&](const MapPage&, int, const TexelRect&) { ++s.height_pages; });
     r.indices->map().for_each_resident([&](const MapPage&, int, const TexelRect&) { ++s.index_pages; });
     s.shadow_cascades_drawn = r.shadows->drawn();
-    s.texture = r.texture->statistics();
+    s.texture = r.texture().statistics();
     s.passes = r.pass_times;
     s.height = r.heights->map().counters();
     s.index = r.indices->map().counters();
@@ -453,13 +553,13 @@ FrameStatistics Renderer::statistics() const {
                 {"layers", r.layers->albedo_reveal.bytes() + r.layers->normal_gloss_occlusion.bytes() +
                                r.layers->metalness.bytes() + r.layers->distortion.bytes()},
                 {"shadow atlas", r.shadows->atlas().bytes()},
-                {"frame targets", r.targets.bytes()}};
+                {"frame targets", r.targets.bytes() + r.resolve->tiles().bytes()}};
     return s;
 }
 
 Result<uint32_t> Renderer::count_stale_pages(gpu::FrameRing& ring) {
     Impl& r = *impl_;
-    auto stale = r.texture->count_stale_pages(ring);
+    auto stale = r.texture().count_stale_pages(ring);
     if (!stale) return stale.error();
     return *stale + r.heights->count_stale_pages(r.document) + r.indices->count_stale_pages(r.document);
 }

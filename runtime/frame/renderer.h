@@ -20,6 +20,7 @@
 #include "runtime/base/result.h"
 #include "runtime/document/document.h"
 #include "runtime/frame/camera.h"
+#include "runtime/frame/filter_tiles.h"
 #include "runtime/frame/frame_settings.h"
 #include "runtime/gpu/frame_ring.h"
 #include "runtime/texture/virtual_texture.h"
@@ -40,7 +41,8 @@ struct RendererDesc {
     // wants smaller pages: a 16 km range along a slope takes 618 (with 320 the ground at the eye's feet was
     // metres off).
     int height_slots = 640, index_slots = 144;
-    int page_budget = 0;  // whole texture pages a frame; 0: by profile
+    // What is 0 here: by quality (sizes), by profile (pages a frame). The format is page_format's.
+    VirtualTextureDesc texture{.pages_per_side = 0, .indirection_size = 0, .budget_pages = 0};
     bool shadows = true;
     double patch_split_distance = 0;  // 0: by profile
 };
@@ -69,6 +71,11 @@ class Renderer {
     void on_dirt(const Dirt& dirt);
     // Reads the sun, haze and layer list again from the document.
     Status settings_changed(gpu::FrameRing& ring);
+    // While pictures are made: the next texture is prepared beside the one shown, which stays until the new
+    // one has what the picture wants. After an error everything is as it was.
+    Status set_quality(Quality quality, std::optional<PageFormat> page_format);
+    [[nodiscard]] Quality quality() const;
+    [[nodiscard]] PageFormat page_format() const;  // what the device takes of what was asked for
 
     // Records one frame. The picture is `extent` · render_scale pixels in the upper left of picture().
     Status render(gpu::FrameRing& ring, gpu::Commands& commands, const Camera& camera, glm::uvec2 extent,
@@ -80,6 +87,7 @@ class Renderer {
     [[nodiscard]] glm::uvec2 picture_size() const;  // pixels of it that the last frame filled
     [[nodiscard]] gpu::Image& gbuffer();            // tests: RGBA16F
     [[nodiscard]] gpu::Image& depth();
+    [[nodiscard]] FilterTiles& filter_tiles();  // benches: of the newest resolve by tiles
 
     // Nothing to compose, nothing missing, nothing dirty: another frame from the same camera gives the same
     // picture.

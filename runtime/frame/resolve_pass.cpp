@@ -1,6 +1,10 @@
 #include "runtime/frame/resolve_pass.h"
 
-#include "shaders/frame/resolve_io.h"
+#include <algorithm>
+
+#include "runtime/frame/debug_views.h"
+#include "shaders/frame/debug_io.h"
+#include "shaders/frame/tiles_io.h"
 
 namespace loam {
 
@@ -9,6 +13,15 @@ using gpu::Access;
 namespace {
 
 constexpr uint32_t kMaterialSlot = 5;  // VT_FIRST_SLOT and DIRECT_FIRST_SLOT of the resolve shaders
+constexpr uint32_t kTileSlot = 20;     // tile.vert
+
+// Look-ups that the taps of a class are shared among.
+constexpr int probes_of(int taps) {
+    return std::max(1, taps / kProbeTaps);
+}
+// Probes of hardware anisotropy, for eight to one: a sampler's taps reach half the probe's axis, so two of at
+// most four to one stay within a page's border.
+constexpr int kHardwareProbes = 2;
 
 void use_material(gpu::Commands& commands, const ResolveInputs& in, bool direct) {
     if (direct)
@@ -31,15 +44,15 @@ void use_material(gpu::Commands& commands, const ResolveInputs& in, bool direct)
                       {in.texture.atlas(3), Access::fragment_sampled}});
 }
 
-std::vector<gpu::Bound> cached_material(const ResolveInputs& in) {
+std::vector<gpu::Bound> cached_material(const ResolveInputs& in, const gpu::Sampler& sampler) {
     constexpr uint32_t s = kMaterialSlot;
     return {{s, in.texture.params()},
             {s + 1, in.texture.sector_table()},
             {s + 2, in.texture.indirection().view(), in.texture.nearest_sampler()},
-            {s + 3, in.texture.atlas(0).view(), in.texture.sampler()},
-            {s + 4, in.texture.atlas(1).view(), in.texture.sampler()},
-            {s + 5, in.texture.atlas(2).view(), in.texture.sampler()},
-            {s + 6, in.texture.atlas(3).view(), in.texture.sampler()}};
+            {s + 3, in.texture.atlas(0).view(), sampler},
+            {s + 4, in.texture.atlas(1).view(), sampler},
+            {s + 5, in.texture.atlas(2).view(), sampler},
+            {s + 6, in.texture.atlas(3).view(), sampler}};
 }
 
 std::vector<gpu::Bound> direct_material(const ResolveInputs& in) {
@@ -65,11 +78,18 @@ std::vector<gpu::Bound> floor_material(const ResolveInputs& in) {
 }  // namespace
 
 Result<ResolvePass> ResolvePass::create(gpu::Device& device, const LayerSet& layers,
-                                        const PageTextures& textures) {
+                                        const PageTextures& textures, Filter moving, Filter resting) {
     ResolvePass pass(device);
     LOAM_TRY(pass.make_fixed());
-    for (Kind kind : {Kind::fast, Kind::fine})
-        if (auto made = pass.pipeline(kind, layers, textures); !made) return made.error();
+    for (const bool at_rest : {false, true}) {
+        const FrameSettings settings{.at_rest = at_rest, .filter = at_rest ? resting : moving};
+        Variant v = pass.variant(settings, ResolvePart::all, false);
+        for (v.taps = v.tiles ? 1 : v.taps; v.taps <= kMaxTaps; v.taps *= 2) {
+            if (v.tiles) v.probes = probes_of(v.taps);
+            if (auto made = pass.pipeline(v, layers, textures); !made) return made.error();
+            if (!v.tiles) break;
+        }
+    }
     return pass;
 }
 
@@ -93,32 +113,60 @@ Status ResolvePass::make_fixed() {
     return {};
 }
 
-Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
+ResolvePass::Variant ResolvePass::variant(const FrameSettings& settings, ResolvePart part,
+                                          bool has_decals) const {
+    using Ground = Variant::Ground;
+    Variant v{.fine_shadows = settings.at_rest};
+    if (part == ResolvePart::floor) {
+        v.ground = Ground::floor;
+    } else if (settings.shading != Shading::virtual_texture) {
+        v.ground = settings.shading == Shading::direct ? Ground::direct : Ground::direct_texels;
+        v.decals = has_decals;
+    } else {
+        v.debug = settings.debug != DebugView::none;
+        v.map = debug_is_map(settings.debug);
+        v.two_mips = *settings.filter != Filter::bilinear;
+        // Debug views show the same places of the same pages however many taps there are.
+        v.tiles = *settings.filter == Filter::anisotropic_tiles && !v.debug;
+        v.hardware = *settings.filter == Filter::anisotropic_hardware;
+        if (v.hardware) {
+            v.taps = kMaxTaps;
+            v.probes = kHardwareProbes;
+        }
+    }
+    return v;
+}
+
+Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& layers,
                                              const PageTextures& textures) {
-    if (textures.layout != layout_ || textures.placement != placement_) pipelines_ = {};
+    using Ground = Variant::Ground;
+    if (textures.layout != layout_ || textures.placement != placement_) pipelines_.clear();
     layout_ = textures.layout;
     placement_ = textures.placement;
-    gpu::Pipeline& pipeline = pipelines_[size_t(kind)];
+    gpu::Pipeline& pipeline = pipelines_[v];
     if (pipeline) return &pipeline;
-    const bool texels = kind == Kind::texels || kind == Kind::texels_decals;
-    const bool direct = texels || kind == Kind::direct || kind == Kind::direct_decals;
-    const bool floor = kind == Kind::floor || kind == Kind::floor_fine;
+    const bool direct = v.ground == Ground::direct || v.ground == Ground::direct_texels;
+    const bool floor = v.ground == Ground::floor;
     gpu::GraphicsDesc d{
         .name = direct ? "resolve direct" : "resolve",
-        .vertex_shader = "frame/fullscreen.vert",
-        .fragment_shader = direct  ? "frame/resolve_direct.frag"
-                           : floor ? "frame/resolve_floor.frag"
-                                   : "frame/resolve.frag",
+        .vertex_shader = v.tiles ? "frame/tile.vert" : "frame/fullscreen.vert",
+        .fragment_shader = direct    ? "frame/resolve_direct.frag"
+                           : floor   ? "frame/resolve_floor.frag"
+                           : v.map   ? "frame/resolve_map.frag"
+                           : v.debug ? "frame/resolve_debug.frag"
+                                     : "frame/resolve.frag",
         .push_bytes = sizeof(shared::ResolvePush),
-        // 0: fine shadows, 1: debug views, 20: both mips of a page, 21: layers with metal, 22: decals, 25:
-        // texels, 30, 31: the page's layout and channels, 40: tile hiding, 41: distortion,
-        // 42: transitions.
-        .constants = {{0, kind == Kind::fast || kind == Kind::floor ? 0u : 1u},
-                      {1, kind == Kind::debug ? 1u : 0u},
-                      {20, kind == Kind::fast ? 0u : 1u},
+        // 0: fine shadows, 20: both mips of a page, 21: layers with metal, 22: decals, 25: texels,
+        // 26: taps, 27: look-ups they are shared among, 28: the sampler's own anisotropy, 30, 31: the page's
+        // layout and channels, 40: tile hiding, 41: distortion, 42: transitions.
+        .constants = {{0, v.fine_shadows},
+                      {20, v.two_mips},
                       {21, layers.has_metal ? 1u : 0u},
-                      {22, kind == Kind::direct_decals || kind == Kind::texels_decals ? 1u : 0u},
-                      {25, texels ? 1u : 0u},
+                      {22, v.decals},
+                      {25, v.ground == Ground::direct_texels},
+                      {26, uint32_t(v.taps)},
+                      {27, uint32_t(v.probes)},
+                      {28, v.hardware},
                       {30, textures.layout},
                       {31, textures.placement},
                       {40, layers.ground.tile_hiding},
@@ -138,6 +186,12 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
         d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images));
         d.bindings.push_back(gpu::sampled_image(kMaterialSlot + buffers + images + 1));
     }
+    if (v.debug) d.bindings.push_back(gpu::storage_buffer(kDebugFactsSlot));
+    if (v.map) {
+        d.bindings.push_back(gpu::storage_buffer(kDebugSquaresSlot));
+        d.stencil = {};  // over the whole picture
+    }
+    if (v.tiles) d.bindings.push_back(gpu::storage_buffer(kTileSlot));
     auto made = gpu::Pipeline::create(*device_, d);
     if (!made) return made.error();
     pipeline = std::move(*made);
@@ -145,24 +199,46 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(Kind kind, const LayerSet& layers,
 }
 
 void ResolvePass::take_settings() {
-    for (const Kind kind : {Kind::direct, Kind::direct_decals, Kind::texels, Kind::texels_decals})
-        pipelines_[size_t(kind)] = {};
+    std::erase_if(pipelines_, [](const auto& made) {
+        return made.first.ground == Variant::Ground::direct ||
+               made.first.ground == Variant::Ground::direct_texels;
+    });
+}
+
+// A draw a class: the pixels of its tiles, with its taps.
+Status ResolvePass::cmd_tiles(gpu::Commands& commands, const ResolveInputs& in, Variant v, int most_taps,
+                              std::vector<gpu::Bound> bound, shared::ResolvePush push) {
+    bound.emplace_back(kTileSlot, tiles_.list());
+    push.tiles_across = tiles_.tiles().x;
+    for (int c = 0; c < kTapClasses && 1 << c <= most_taps; ++c) {
+        v.taps = 1 << c;
+        v.probes = probes_of(v.taps);
+        auto resolve = pipeline(v, in.layers, in.texture.textures());
+        if (!resolve) return resolve.error();
+        commands.bind(**resolve, bound);
+        push.first_tile = tiles_.first_tile(c);
+        commands.push(**resolve, push);
+        commands.draw_indirect(tiles_.draws(), uint64_t(c) * sizeof(shared::TileDraw));
+    }
+    return {};
 }
 
 Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
                                const FrameSettings& settings, ResolvePart part) {
-    const bool floor = part == ResolvePart::floor;
-    const bool direct = settings.shading != Shading::virtual_texture;
-    const bool texels = settings.shading == Shading::direct_texels;
-    const Kind kind = floor                     ? settings.fine_filter ? Kind::floor_fine : Kind::floor
-                      : direct && in.has_decals ? texels ? Kind::texels_decals : Kind::direct_decals
-                      : direct                  ? texels ? Kind::texels : Kind::direct
-                      : settings.debug != DebugView::none ? Kind::debug
-                      : settings.fine_filter              ? Kind::fine
-                                                          : Kind::fast;
-    auto resolve = pipeline(kind, in.layers, in.texture.textures());
-    if (!resolve) return resolve.error();
+    const Variant v = variant(settings, part, in.has_decals);
+    const bool floor = part == ResolvePart::floor, direct = settings.shading != Shading::virtual_texture;
     use_material(commands, in, direct);
+    if (v.hardware && !anisotropic_.handle()) {
+        auto made = gpu::Sampler::create(*device_, {.mip_mode = VK_SAMPLER_MIPMAP_MODE_LINEAR,
+                                                    .max_anisotropy = float(kMaxTaps / v.probes)});
+        if (!made) return made.error();
+        anisotropic_ = std::move(*made);
+    }
+    if (v.tiles) {
+        LOAM_TRY(tiles_.cmd_classify(*device_, commands, in.targets.gbuffer, point_, in.size,
+                                     filter_rule(*settings.filter, settings.most_taps)));
+        commands.use({{tiles_.draws(), Access::indirect_args}, {tiles_.list(), Access::vertex_read}});
+    }
 
     const auto pass = commands.pass("resolve", {{in.targets.picture, Access::color_target},
                                                 {in.targets.depth, Access::depth_sampled},
@@ -175,9 +251,14 @@ Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
     commands.set_viewport(0, 0, float(in.size.x), float(in.size.y));
 
     const gpu::Bound frame_bound(0, *in.uniforms.buffer, in.uniforms.offset, in.uniforms.size_bytes);
-    if (part == ResolvePart::all) {
+    if (part == ResolvePart::sky || (part == ResolvePart::all && !v.map)) {
         commands.bind(sky_, {frame_bound});
         commands.draw(3);
+    }
+
+    if (part == ResolvePart::sky) {
+        commands.end_rendering();
+        return {};
     }
 
     std::vector<gpu::Bound> bound = {
@@ -187,13 +268,26 @@ Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
         {3, in.targets.occlusion.view(), point_},
         {4, in.shadows.atlas().view(), in.shadows.sampler()},
     };
-    const std::vector<gpu::Bound> material = floor    ? floor_material(in)
-                                             : direct ? direct_material(in)
-                                                      : cached_material(in);
+    const std::vector<gpu::Bound> material =
+        floor    ? floor_material(in)
+        : direct ? direct_material(in)
+                 : cached_material(in, v.hardware ? anisotropic_ : in.texture.sampler());
     bound.insert(bound.end(), material.begin(), material.end());
-    commands.bind(**resolve, bound);
-    commands.push(**resolve, shared::ResolvePush{uint32_t(settings.debug), settings.footprint_bias});
-    commands.draw(3);
+    if (v.debug) bound.emplace_back(kDebugFactsSlot, *in.facts.buffer, in.facts.offset, in.facts.size_bytes);
+    if (v.map)
+        bound.emplace_back(kDebugSquaresSlot, *in.squares.buffer, in.squares.offset, in.squares.size_bytes);
+    shared::ResolvePush push{};
+    push.debug_view = uint32_t(settings.debug);
+    push.footprint_bias = settings.footprint_bias;
+    if (v.tiles) {
+        LOAM_TRY(cmd_tiles(commands, in, v, settings.most_taps, std::move(bound), push));
+    } else {
+        auto resolve = pipeline(v, in.layers, in.texture.textures());
+        if (!resolve) return resolve.error();
+        commands.bind(**resolve, bound);
+        commands.push(**resolve, push);
+        commands.draw(3);
+    }
     commands.end_rendering();
     return {};
 }

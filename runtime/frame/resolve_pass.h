@@ -3,16 +3,19 @@
 // "Terrain Rendering".
 #pragma once
 
-#include <array>
+#include <compare>
+#include <map>
 #include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/frame/filter_tiles.h"
 #include "runtime/frame/frame_settings.h"
 #include "runtime/frame/targets.h"
 #include "runtime/gpu/frame_ring.h"
 #include "runtime/maps/index_map.h"
 #include "runtime/scene/shadow_cascades.h"
 #include "runtime/texture/virtual_texture.h"
+#include "shaders/frame/resolve_io.h"
 
 namespace loam {
 
@@ -27,47 +30,55 @@ struct ResolveInputs {
     gpu::UploadSlice uniforms;  // FrameUniforms
     gpu::UploadSlice decals;    // DirectDecal, for direct shading
     bool has_decals = false;
+    gpu::UploadSlice facts, squares;  // VtPlaceFacts and VtImageSquare, for debug views
 };
 
-// The frame draws sky and ground; benches draw the ground alone, or its floor (resolve_floor.frag).
-enum class ResolvePart { all, ground, floor };
+// The frame draws sky and ground (or the sky alone, where a debug view draws the ground); benches draw the
+// ground alone, or its floor (resolve_floor.frag).
+enum class ResolvePart { all, sky, ground, floor };
 
 class ResolvePass {
   public:
-    // The sky's pipeline and those that a window needs at once.
+    // The sky's pipeline and those that a window needs at once, with the filters it moves and rests with.
     static Result<ResolvePass> create(gpu::Device& device, const LayerSet& layers,
-                                      const PageTextures& textures);
+                                      const PageTextures& textures, Filter moving, Filter resting);
 
     // After LayerSet::take_settings: direct shading is another pipeline then.
     void take_settings();
     // Reads the prepass' targets, writes the picture (left in Access::color_target).
+    // `settings` names its filter.
     Status cmd_record(gpu::Commands& commands, const ResolveInputs& inputs, const FrameSettings& settings,
                       ResolvePart part);
+    // The lists of the newest resolve that was drawn by tiles.
+    [[nodiscard]] FilterTiles& tiles() { return tiles_; }
 
   private:
-    enum class Kind {
-        fast,
-        fine,
-        debug,
-        direct,
-        direct_decals,
-        texels,
-        texels_decals,
-        floor,
-        floor_fine,
-        count
+    // Everything that makes it another pipeline.
+    struct Variant {
+        enum class Ground { cached, direct, direct_texels, floor } ground = Ground::cached;
+        bool fine_shadows = false, decals = false, tiles = false;
+        bool debug = false, map = false;  // map: a debug view of the textures themselves, over the whole picture
+        bool two_mips = false, hardware = false;
+        int taps = 1, probes = 1;  // of the virtual texture, shaders/texture/vt_sample.glsl
+        auto operator<=>(const Variant&) const = default;
     };
 
     explicit ResolvePass(gpu::Device& device) : device_(&device) {}
     Status make_fixed();
+    [[nodiscard]] Variant variant(const FrameSettings& settings, ResolvePart part, bool has_decals) const;
     // Those made for pages of another layout are dropped.
-    Result<gpu::Pipeline*> pipeline(Kind kind, const LayerSet& layers, const PageTextures& textures);
+    Result<gpu::Pipeline*> pipeline(const Variant& variant, const LayerSet& layers,
+                                    const PageTextures& textures);
+    Status cmd_tiles(gpu::Commands& commands, const ResolveInputs& inputs, Variant variant, int most_taps,
+                     std::vector<gpu::Bound> bound, shared::ResolvePush push);
 
     gpu::Device* device_;
     gpu::Sampler point_;
+    gpu::Sampler anisotropic_;  // of the pages; made when first used
     gpu::Pipeline sky_;
-    std::array<gpu::Pipeline, size_t(Kind::count)> pipelines_;
+    std::map<Variant, gpu::Pipeline> pipelines_;
     uint32_t layout_ = 0, placement_ = 0;  // PageTextures' that the pipelines are made for
+    FilterTiles tiles_;
 };
 
 }  // namespace loam

@@ -10,7 +10,7 @@
 namespace loam {
 
 inline constexpr VkFormat kGbufferFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // see shaders/frame/frame_io.h
-inline constexpr VkFormat kOcclusionFormat = VK_FORMAT_R8_UNORM;
+inline constexpr VkFormat kOcclusionFormat = VK_FORMAT_R8G8_UNORM;    // and the footprint's direction
 inline constexpr VkFormat kPictureFormat = VK_FORMAT_R8G8B8A8_UNORM;  // holds sRGB-encoded colours
 
 struct FrameTargets {

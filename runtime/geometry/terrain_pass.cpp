@@ -40,6 +40,8 @@ Result<TerrainPass> TerrainPass::create(gpu::Device& device, const std::vector<V
                                         VkFormat depth_stencil, VkFormat shadow_depth) {
     static_assert(sizeof(shared::GeometryPush) <= 128);
     TerrainPass pass;
+    pass.device_ = &device;
+    pass.depth_stencil_ = depth_stencil;
     gpu::GraphicsDesc desc = patch_pipeline("terrain prepass", depth_stencil);
     desc.fragment_shader = "geometry/terrain_prepass.frag";
     desc.bindings.push_back(gpu::sampled_image(2));
@@ -115,6 +117,26 @@ void TerrainPass::cmd_draw_prepass(gpu::Commands& commands, const PatchSet& patc
     if (!instances_.data || patches.visible_count == 0) return;
     bind(commands, prepass_, patches, heights, clip_from_rel, true);
     vkCmdDrawIndexed(commands.handle(), kIndexCount, uint32_t(patches.visible_count), 0, 0, 0);
+}
+
+Status TerrainPass::cmd_draw_levels(gpu::Commands& commands, const PatchSet& patches,
+                                    const HeightMap& heights, const glm::mat4& clip_from_rel,
+                                    VkFormat format) {
+    if (!levels_) {
+        gpu::GraphicsDesc desc = patch_pipeline("terrain levels", depth_stencil_);
+        desc.fragment_shader = "geometry/terrain_level.frag";
+        desc.bindings.push_back(gpu::sampled_image(2));
+        desc.color_formats = {format};
+        desc.depth_write = false;
+        desc.depth_compare = VK_COMPARE_OP_EQUAL;  // gl_Position is invariant
+        auto made = gpu::Pipeline::create(*device_, desc);
+        if (!made) return made.error();
+        levels_ = std::move(*made);
+    }
+    if (!instances_.data || patches.visible_count == 0) return {};
+    bind(commands, levels_, patches, heights, clip_from_rel, true);
+    vkCmdDrawIndexed(commands.handle(), kIndexCount, uint32_t(patches.visible_count), 0, 0, 0);
+    return {};
 }
 
 void TerrainPass::cmd_draw_shadow(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,

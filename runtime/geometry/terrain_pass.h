@@ -39,6 +39,10 @@ class TerrainPass {
     // that of the set.
     void cmd_draw_prepass(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,
                           const glm::mat4& clip_from_rel, const glm::dvec3& camera_m);
+    // Debug view: inside begun rendering of one colour target of `format`, over the depth of a prepass of the
+    // same set: the level of the height page under each pixel. Its pipeline is made when first used.
+    Status cmd_draw_levels(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,
+                           const glm::mat4& clip_from_rel, VkFormat format);
     // Inside begun rendering without colour: the patches of the set that the matrix sees; depth GREATER.
     void cmd_draw_shadow(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,
                          const glm::dmat4& clip_from_rel, const glm::dvec3& camera_m,
@@ -48,7 +52,9 @@ class TerrainPass {
     void bind(gpu::Commands& commands, const gpu::Pipeline& pipeline, const PatchSet& patches,
               const HeightMap& heights, const glm::mat4& clip_from_rel, bool with_normals);
 
-    gpu::Pipeline prepass_, shadow_;
+    gpu::Device* device_ = nullptr;
+    VkFormat depth_stencil_ = VK_FORMAT_UNDEFINED;
+    gpu::Pipeline prepass_, shadow_, levels_;
     gpu::Sampler nearest_, linear_;
     gpu::Buffer indices_;
     gpu::UploadSlice instances_;

@@ -225,4 +225,8 @@ void Commands::draw(uint32_t vertex_count, uint32_t instance_count, uint32_t fir
     vkCmdDraw(buffer_, vertex_count, instance_count, first_vertex, first_instance);
 }
 
+void Commands::draw_indirect(const Buffer& arguments, uint64_t offset) {
+    vkCmdDrawIndirect(buffer_, arguments.handle(), offset, 1, sizeof(VkDrawIndirectCommand));
+}
+
 }  // namespace loam::gpu

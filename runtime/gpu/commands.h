@@ -111,6 +111,9 @@ class Commands {
     void dispatch(uint32_t groups_x, uint32_t groups_y = 1, uint32_t groups_z = 1);
     void draw(uint32_t vertex_count, uint32_t instance_count = 1, uint32_t first_vertex = 0, uint32_t first_instance = 0);
 
+    // One VkDrawIndirectCommand; the buffer was used with Access::indirect_args.
+    void draw_indirect(const Buffer& arguments, uint64_t offset);
+
   private:
     friend class FrameRing;
     void close_pass(uint32_t query);

@@ -9,7 +9,10 @@ BlockShape shape_of(BlockFormat format) {
         case BlockFormat::bc4:
             return {4, 8};
         case BlockFormat::bc3:
+        case BlockFormat::astc4x4:
             return {4, 16};
+        case BlockFormat::astc6x6:
+            return {6, 16};
     }
     LOAM_CHECK(false, "a block format that does not exist");
     return {};

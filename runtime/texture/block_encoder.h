@@ -1,6 +1,6 @@
 // Block compression of an image on the GPU, a format a pipeline: for baking and exporting pages. (Live pages
 // go through the composer, which calls the same encoders on its scratch.) The algorithms are in
-// shaders/texture/bc1.h, bc3.h, bc4.h.
+// shaders/texture/bc1.h, bc3.h, bc4.h, astc.h.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,8 @@ enum class BlockFormat {
     bc1_fine = kEncodeBc1Fine,  // the same format, dearer and nearer
     bc3 = kEncodeBc3,
     bc4 = kEncodeBc4,
+    astc4x4 = kEncodeAstc4x4,
+    astc6x6 = kEncodeAstc6x6,
 };
 struct BlockShape {
     int side_texels = 4;

@@ -12,8 +12,10 @@ bool is_default_root(const PageId& page) {
 }
 }  // namespace
 
-PagePool::PagePool(int pages_per_side)
-    : pages_per_side_(pages_per_side), places_(size_t(pages_per_side) * size_t(pages_per_side)) {
+PagePool::PagePool(int pages_per_side, const PagePoolRules& rules)
+    : pages_per_side_(pages_per_side),
+      rules_(rules),
+      places_(size_t(pages_per_side) * size_t(pages_per_side)) {
     by_page_.reserve(places_.size());
 }
 
@@ -87,7 +89,7 @@ std::vector<int> PagePool::retirable(uint64_t frame) const {
     std::vector<int> found;
     for (int i = 0; i < place_count(); ++i) {
         const Place& p = places_[size_t(i)];
-        if (p.state == State::usable && !p.pinned && p.last_requested + kAgeFrames <= frame)
+        if (p.state == State::usable && !p.pinned && p.last_requested + uint64_t(rules_.age_frames) <= frame)
             found.push_back(i);
     }
     std::sort(found.begin(), found.end(), [&](int a, int b) {
@@ -99,7 +101,8 @@ std::vector<int> PagePool::retirable(uint64_t frame) const {
 
 void PagePool::mark_low_res(int index, int input_level, uint64_t frame) {
     Place& p = places_[size_t(index)];
-    p.retry_wait = p.low_res ? std::min(p.retry_wait * 2, kLastRetry) : kFirstRetry;
+    p.retry_wait =
+        p.low_res ? std::min(p.retry_wait * 2, rules_.last_retry_frames) : rules_.first_retry_frames;
     p.retry_frame = frame + uint64_t(p.retry_wait);
     p.low_res = true;
     p.input_level = input_level;

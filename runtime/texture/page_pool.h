@@ -30,11 +30,15 @@
 
 namespace loam {
 
+struct PagePoolRules {
+    int age_frames = 3;  // a page not requested for this long may be retired
+    // Between compositions of a page that lacks inputs: the first wait, doubled up to the last.
+    int first_retry_frames = 15, last_retry_frames = 60;
+};
+
 class PagePool {
   public:
     static constexpr int kRestFrames = 3;
-    static constexpr int kAgeFrames = 3;  // a page not requested for this long may be retired
-
     enum class State : uint8_t { free, composed, usable, resting };
     struct Place {
         PageId page;
@@ -53,7 +57,7 @@ class PagePool {
     };
 
     // Place 0 is kept for the default root.
-    explicit PagePool(int pages_per_side);
+    explicit PagePool(int pages_per_side, const PagePoolRules& rules = {});
 
     [[nodiscard]] int place_count() const { return int(places_.size()); }
     [[nodiscard]] int used_count() const { return int(by_page_.size()); }
@@ -73,19 +77,22 @@ class PagePool {
     void promote(uint64_t frame, const std::function<void(int index)>& visit);
     void retire(int index, uint64_t frame);
     void revive(int index, uint64_t frame);  // resting and clean
-    // Usable places, unpinned, not requested for kAgeFrames, oldest first.
+    // Usable places, unpinned, not requested for PagePoolRules::age_frames, oldest first.
     [[nodiscard]] std::vector<int> retirable(uint64_t frame) const;
 
     void mark_dirty(int index, const TexelRect& rect);
     void clear_dirty(int index) { places_[size_t(index)].dirty = {}; }
 
-    // Frames between compositions of a page that lacks inputs: 15, 30, 60, and 60 again.
-    static constexpr int kFirstRetry = 15, kLastRetry = 60;
+    // Composed just now from inputs of this level, which it should not be: again after 15, 30, 60, 60 …
+    // frames.
     void mark_low_res(int index, int input_level, uint64_t frame);
+    // Composed from inputs of another level meanwhile, as it was edited.
+    void set_input_level(int index, int level) { places_[size_t(index)].input_level = level; }
     void clear_low_res(int index) { places_[size_t(index)].low_res = false; }
 
   private:
     int pages_per_side_;
+    PagePoolRules rules_;
     std::vector<Place> places_;
     std::unordered_map<PageId, int, PageIdHash> by_page_;
 };

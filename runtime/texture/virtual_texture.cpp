@@ -16,8 +16,6 @@ namespace {
 
 using gpu::Access;
 constexpr int kRootDivisor = 4;  // at most this part of the physical texture holds roots of live sectors
-constexpr float kAnisotropy =
-    0.5f;  // between the long axis (0: blurry) and the short one (1: aliased), as the talk's mipBias
 
 template <typename T>
 Status assign(T& target, Result<T> made) {
@@ -150,7 +148,8 @@ void VirtualTexture::Impl::cmd_eye(gpu::Commands& commands, const TextureView& v
     p.default_pages_per_sector = std::ldexp(1.0f, -layout.default_log2_page);
     p.default_log2_texel = log2_texel({{}, layout.default_log2_width, 0, 0});
     p.sector_log2_root = log2_texel({{true, 0, 0}, 0, 0, 0});
-    p.anisotropy = kAnisotropy;
+    p.short_share = view.filter.short_share;
+    p.log2_taps = view.filter.log2_taps;
     commands.use({{eye.params, Access::copy_target}});
     vkCmdUpdateBuffer(commands.handle(), eye.params.handle(), 0, sizeof p, &p);
 
@@ -240,6 +239,7 @@ Status VirtualTexture::record_feedback(gpu::FrameRing& ring, gpu::Commands& comm
     const FeedbackGrid grid =
         feedback_grid(exact ? FeedbackCells::every_pixel : t.desc.feedback_cells, source.picture_px, t.frame);
     const uint64_t bytes = uint64_t(grid.cells.x) * uint64_t(grid.cells.y) * 4;
+    if (source.eye == Eye::camera) t.counted.feedback_cells = uint32_t(bytes / 4);
     if (!eye.feedback || eye.feedback.size_bytes() < bytes)
         LOAM_TRY(assign(eye.feedback, storage_buffer(t.device, "feedback", bytes)));
     {
@@ -308,6 +308,9 @@ const gpu::Sampler& VirtualTexture::nearest_sampler() const {
 const TextureLayout& VirtualTexture::layout() const {
     return impl_->layout;
 }
+const VirtualTextureDesc& VirtualTexture::desc() const {
+    return impl_->desc;
+}
 uint64_t VirtualTexture::last_feedback_frame() const {
     return impl_->feedback_view_frame;
 }
@@ -332,9 +335,11 @@ VirtualTexture::Statistics VirtualTexture::statistics() const {
     s.live_sectors = uint32_t(t.sectors.live().size());
     s.requested_pages = uint32_t(t.camera_eye().requests.size());
     s.missing_pages = uint32_t(t.missing.size());
-    s.dirty_pages = uint32_t(t.dirty_order.size());
+    s.dirty_pages = uint32_t(t.dirty.size());
     s.low_res_pages = t.low_res_count();
     s.announced_missing = t.announced_missing;
+    s.hidden_pages = t.hidden_pages;
+    s.page_ms = t.price.page_ms();
     s.indirection_texels = uint64_t(t.sectors.used_texels());
     s.indirection_capacity = uint64_t(t.sectors.capacity_texels());
     s.capped_images = uint32_t(t.sectors.capped_count());

@@ -17,10 +17,13 @@
 #include "runtime/gpu/frame_ring.h"
 #include "runtime/maps/index_map.h"
 #include "runtime/texture/feedback.h"
+#include "runtime/texture/filter.h"
 #include "runtime/texture/layer_set.h"
 #include "runtime/texture/page_format.h"
 #include "runtime/texture/page_id.h"
+#include "runtime/texture/page_pool.h"
 #include "runtime/texture/sector_set.h"
+#include "shaders/frame/debug_io.h"
 
 namespace loam {
 
@@ -32,8 +35,13 @@ struct VirtualTextureDesc {
     PageFormat format = PageFormat::bc1x3;
     int max_live_sectors = 255;  // beside that, their root pages take at most a third of the physical texture
     int budget_pages = 2;        // whole pages composed a frame
+    double budget_ms = 0;        // what they may take a frame, instead of a number; 0: budget_pages
     FeedbackCells feedback_cells = FeedbackCells::grid;
     FeedbackRules feedback_rules;
+    PagePoolRules pool_rules;
+    // Of each live sector that is not seen, the nearest page 1/2^depth of its image wide is kept, for as many
+    // sectors as this part of the cache has places.
+    int hidden_divisor = 16, hidden_depth = 4;
     bool decals = true;
 };
 
@@ -51,6 +59,7 @@ struct TextureView {
     // A still picture: every pixel is asked, and only what they want is shown, so that the picture depends on
     // the view and not on the way there.
     bool still = false;
+    FilterRule filter;
     float mip_bias = 0;
     int budget_pages = -1;  // overrides VirtualTextureDesc::budget_pages when >= 0
     // While someone works: what a frame may take, and how long the last one took (0: unknown). Composition
@@ -133,6 +142,9 @@ class VirtualTexture {
         uint32_t dirty_pages = 0;
         uint32_t low_res_pages = 0;      // composed from coarser inputs, to be composed again
         uint32_t announced_missing = 0;  // of the announced place's pages
+        uint32_t feedback_cells = 0;     // of the newest frame
+        uint32_t hidden_pages = 0;       // wanted for sectors that are not seen
+        double page_ms = 0;              // what composing one takes, as far as known
         uint64_t indirection_texels = 0, indirection_capacity = 0;
         // Images made smaller than wanted as the indirection texture is full, and the widest of those (log2
         // pages).
@@ -145,6 +157,12 @@ class VirtualTexture {
         uint64_t gpu_bytes = 0;
     };
     [[nodiscard]] Statistics statistics() const;
+    [[nodiscard]] const VirtualTextureDesc& desc() const;  // as made
+
+    // Debug views: of every place, row by row; counting decals looks at the document for each.
+    enum class DecalCount { none, counted };
+    [[nodiscard]] std::vector<shared::VtPlaceFacts> place_facts(DecalCount decals) const;
+    [[nodiscard]] std::vector<shared::VtImageSquare> image_squares() const;
 
     // Tests: every resident page composed again from nothing into scratch and compared with what is in the
     // atlas. Returns the number of pages that differ in any byte (all mips, all textures).

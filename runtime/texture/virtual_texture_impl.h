@@ -13,8 +13,10 @@
 #include <vector>
 
 #include "runtime/texture/compose_budget.h"
+#include "runtime/texture/compose_plan.h"
 #include "runtime/texture/composer.h"
 #include "runtime/texture/feedback.h"
+#include "runtime/texture/page_facts.h"
 #include "runtime/texture/page_pool.h"
 #include "runtime/texture/sector_set.h"
 #include "runtime/texture/virtual_texture.h"
@@ -47,11 +49,12 @@ struct VirtualTexture::Impl {
           desc(s),
           textures(page_textures(s.format)),
           layout(t),
-          pool(s.pages_per_side),
+          pool(s.pages_per_side, s.pool_rules),
           sectors(sector_desc),
           entered(size_t(pool.place_count()), 0),
           popularity(size_t(pool.place_count()), 0),
-          shown(size_t(pool.place_count()), 0) {}
+          shown(size_t(pool.place_count()), 0),
+          facts(pool.place_count()) {}
 
     // virtual_texture_plan.cpp
     void advance(const TextureView& view);
@@ -62,9 +65,11 @@ struct VirtualTexture::Impl {
     void mark_seen(const std::vector<PageRequest>& wanted);
     void want_hidden();
     void keep_only_wanted(const TextureView& view);
-    void retry_low_res(std::vector<ComposeJob>& jobs);
     void choose_dirty(std::vector<ComposeJob>& jobs);
-    void choose_missing(const TextureView& view, std::vector<ComposeJob>& jobs);
+    [[nodiscard]] int pages_left(const TextureView& view,
+                                 int64_t dirt_texels) const;                    // of the frame's budget
+    [[nodiscard]] int choose_missing(int left, std::vector<ComposeJob>& jobs);  // returns what is left then
+    void choose_low_res(int left, std::vector<ComposeJob>& jobs);
     enum class InputState {
         ready,
         low_res,
@@ -86,14 +91,14 @@ struct VirtualTexture::Impl {
     void find_shown();
     void want(const PageRequest& request);
     void make_room();
-    void order_dirty();
+    void gather_dirty();
     [[nodiscard]] MapPage index_page(const PageId& page) const;
     [[nodiscard]] uint32_t indirection_texel(int place, int log2_width) const;
     [[nodiscard]] std::vector<ComposeJob> choose_jobs(const TextureView& view);
     [[nodiscard]] ComposeJob make_job(int place, const TexelRect& rect, const MapPage& from) const;
     // Wanted pages that were composed from coarser inputs.
     [[nodiscard]] uint32_t low_res_count() const;
-    [[nodiscard]] bool has_dirt() const { return !dirty_order.empty(); }
+    [[nodiscard]] bool has_dirt() const { return !dirty.empty(); }
 
     // virtual_texture.cpp
     Status make_resources();
@@ -139,9 +144,12 @@ struct VirtualTexture::Impl {
     std::vector<uint32_t> entered;     // by place: generation of its page that entered a tree
     std::vector<uint32_t> popularity;  // by place, of this frame's wishes; 0: not wanted
     std::vector<uint32_t> shown;       // by place: cells of the newest feedback that see this page
-    std::vector<int> dirty_order;      // dirty places: those seen, those wanted, the others; nearest first
+    PageFacts facts;
+    std::vector<DirtyPage> dirty;  // in the order in which they are composed
     glm::dvec2 camera_m{0};
     ComposeBudget budget;
+    ComposePrice price;
+    uint32_t hidden_pages = 0;
     int64_t composed_texels = 0;  // by the last update
     Statistics counted;
 };

@@ -9,18 +9,11 @@ namespace loam {
 
 namespace {
 
-// Dirt that is in view is composed in the next frame up to this, whatever the budget says: a dab shows at
-// once.
-constexpr int64_t kShownDirtTexels = 4 * ComposeBudget::kPage;
 constexpr size_t kInputLookahead = 24;  // index pages asked for ahead, of missing pages and of dirty ones
 // A page not wanted for so long, whose parent is, only shows texels too fine for the distance.
 constexpr uint64_t kTooFineFrames = 30;
 constexpr TexelRect kWholePage{0, 0, kPageTexels, kPageTexels};
-// Hidden sectors: not seen for so long; their page is 1/2^depth of the image wide; they take at most this
-// part of the cache.
-constexpr uint64_t kHiddenFrames = 8;
-constexpr int kHiddenDepth = 4;
-constexpr int kHiddenDivisor = 16;
+constexpr uint64_t kHiddenFrames = 8;  // a sector not seen for so long is hidden
 
 }  // namespace
 
@@ -155,10 +148,11 @@ void VirtualTexture::Impl::want_hidden() {
         return a->distance_m != b->distance_m ? a->distance_m < b->distance_m : a->id < b->id;
     });
     for (const LiveSector* s : hidden) want({PageId{s->image(), 0, 0, 0}, 1});
-    const size_t limit = size_t(pool.place_count()) / kHiddenDivisor;
+    const size_t limit = size_t(pool.place_count() / desc.hidden_divisor);
     if (hidden.size() > limit) hidden.resize(limit);
+    hidden_pages = uint32_t(hidden.size());
     for (const LiveSector* s : hidden) {
-        const int depth = std::min(kHiddenDepth, s->log2_width());
+        const int depth = std::min(desc.hidden_depth, s->log2_width());
         const auto nearest = [&](double camera, int sector) {
             const double pages = (camera / kSectorSize_m - sector) * double(1 << depth);
             return int(std::clamp(std::floor(pages), 0.0, double((1 << depth) - 1)));
@@ -246,21 +240,20 @@ void VirtualTexture::Impl::make_room() {
     }
 }
 
-void VirtualTexture::Impl::order_dirty() {
-    dirty_order.clear();
-    for (int i = 0; i < pool.place_count(); ++i)
-        if (!pool.place(i).dirty.empty()) dirty_order.push_back(i);
-    const auto distance_m = [&](int place) {
-        return layout.square(pool.place(place).page).distance(camera_m.x, camera_m.y);
-    };
-    std::sort(dirty_order.begin(), dirty_order.end(), [&](int a, int b) {
-        const uint32_t sa = shown[size_t(a)], sb = shown[size_t(b)];
-        if (sa != sb) return sa > sb;
-        const bool wa = popularity[size_t(a)] > 0, wb = popularity[size_t(b)] > 0;
-        if (wa != wb) return wa;
-        const double da = distance_m(a), db = distance_m(b);
-        return da != db ? da < db : a < b;
-    });
+void VirtualTexture::Impl::gather_dirty() {
+    dirty.clear();
+    for (int i = 0; i < pool.place_count(); ++i) {
+        const PagePool::Place& p = pool.place(i);
+        if (p.dirty.empty()) continue;
+        // A page from coarser inputs is composed whole, as the inputs there are now may be others.
+        const TexelRect rect = p.low_res ? kWholePage : aligned_out(p.dirty, 8, kPageTexels);
+        dirty.push_back({.place = i,
+                         .texels = rect.area(),
+                         .shown = shown[size_t(i)],
+                         .wanted = popularity[size_t(i)] > 0,
+                         .distance_m = layout.square(p.page).distance(camera_m.x, camera_m.y)});
+    }
+    order_dirty(dirty);
 }
 
 void VirtualTexture::Impl::advance(const TextureView& view) {
@@ -275,11 +268,12 @@ void VirtualTexture::Impl::advance(const TextureView& view) {
     take_feedback(view, Eye::announced);
     update_sectors(view);
     budget.frame_took(view.last_frame_ms, view.goal_ms, composed_texels);
+    price.frame_took(view.last_frame_ms, composed_texels);
     gather_missing();
     find_shown();
     keep_only_wanted(view);
     make_room();
-    order_dirty();
+    gather_dirty();
 }
 
 ComposeJob VirtualTexture::Impl::make_job(int place, const TexelRect& rect, const MapPage& from) const {
@@ -299,52 +293,36 @@ VirtualTexture::Impl::Inputs VirtualTexture::Impl::inputs_of(const PageId& page)
     return {there, there == wanted ? InputState::ready : InputState::low_res};
 }
 
-// Low-res pages whose inputs have come are composed a last time; the others again from the best there is, at
-// growing intervals. Source: Call of Duty talk, "Battle Against Low-Rez VT", "Composite even when not ready".
-void VirtualTexture::Impl::retry_low_res(std::vector<ComposeJob>& jobs) {
-    bool ready = false;
-    for (int i = 0; i < pool.place_count(); ++i) {
-        const PagePool::Place& p = pool.place(i);
-        if (p.state == PagePool::State::free || !p.low_res) continue;
-        const Inputs inputs = inputs_of(p.page);
-        if (inputs.state == InputState::ready) {
-            pool.clear_low_res(i);
-            pool.mark_dirty(i, kWholePage);
-            ready = true;
-        } else if (p.retry_frame <= frame) {
-            if (inputs.state == InputState::low_res && inputs.page.level < p.input_level)
-                jobs.push_back(make_job(i, kWholePage, inputs.page));
-            pool.mark_low_res(i, std::min(p.input_level, inputs.page.level), frame);
-        }
-    }
-    if (ready) order_dirty();
-}
-
 void VirtualTexture::Impl::choose_dirty(std::vector<ComposeJob>& jobs) {
-    int64_t texels = 0;
-    for (const int place : dirty_order) {
-        const PagePool::Place& p = pool.place(place);
-        const Inputs inputs = inputs_of(p.page);
-        if (p.low_res || inputs.state != InputState::ready) continue;
-        const TexelRect rect = aligned_out(p.dirty, 8, kPageTexels);
-        const int64_t limit = shown[size_t(place)] > 0 ? kShownDirtTexels : budget.texels();
-        if (texels > 0 && texels + rect.area() > limit) break;
-        texels += rect.area();
-        jobs.push_back(make_job(place, rect, inputs.page));
-        pool.clear_dirty(place);
+    std::vector<DirtyPage> ready;
+    for (const DirtyPage& d : dirty) {
+        const PagePool::Place& p = pool.place(d.place);
+        const InputState state = inputs_of(p.page).state;
+        if (state == InputState::ready || (p.low_res && state == InputState::low_res)) ready.push_back(d);
     }
-    std::erase_if(dirty_order, [&](int place) { return pool.place(place).dirty.empty(); });
+    ready.resize(dirt_that_fits(ready, budget.texels()));
+    for (const DirtyPage& d : ready) {
+        const PagePool::Place& p = pool.place(d.place);
+        const Inputs inputs = inputs_of(p.page);
+        jobs.push_back(
+            make_job(d.place, p.low_res ? kWholePage : aligned_out(p.dirty, 8, kPageTexels), inputs.page));
+        if (inputs.state == InputState::ready) pool.clear_low_res(d.place);
+        pool.set_input_level(d.place, inputs.page.level);
+        pool.clear_dirty(d.place);
+    }
 }
 
-void VirtualTexture::Impl::choose_missing(const TextureView& view, std::vector<ComposeJob>& jobs) {
-    // New pages share the budget with dirt; at least one is composed every other frame.
-    int64_t texels = 0;
-    for (const ComposeJob& job : jobs) texels += job.rect.area();
-    int left = view.budget_pages >= 0 ? view.budget_pages : desc.budget_pages;
-    if (view.goal_ms > 0) {
-        const int64_t fit = std::max<int64_t>(0, budget.texels() - texels) / ComposeBudget::kPage;
-        left = std::min(left, std::max(int(fit), texels == 0 || frame % 2 == 0 ? 1 : 0));
-    }
+int VirtualTexture::Impl::pages_left(const TextureView& view, int64_t dirt_texels) const {
+    const bool asked = view.budget_pages >= 0;
+    return page_allowance({.pages = asked ? view.budget_pages : desc.budget_pages,
+                           .ms = asked ? 0.0 : desc.budget_ms,
+                           .page_ms = price.page_ms(),
+                           .fit_texels = budget.texels(),
+                           .waited_for = view.goal_ms > 0},
+                          dirt_texels, frame);
+}
+
+int VirtualTexture::Impl::choose_missing(int left, std::vector<ComposeJob>& jobs) {
     std::vector<PageRequest> still_missing;
     for (const PageRequest& request : missing) {
         const Inputs inputs = inputs_of(request.page);
@@ -356,27 +334,63 @@ void VirtualTexture::Impl::choose_missing(const TextureView& view, std::vector<C
         }
         --left;
         ++counted.pages_composed;
+        facts.taken(place);
         if (inputs.state == InputState::low_res) pool.mark_low_res(place, inputs.page.level, frame);
         jobs.push_back(make_job(place, kWholePage, inputs.page));
     }
     missing = std::move(still_missing);
+    return left;
+}
+
+// What is left of the budget: low-res pages whose inputs have come, a last time; the others from the best
+// there is, at growing intervals. Source: Call of Duty talk, "Battle Against Low-Rez VT", "Composite even
+// when not ready".
+void VirtualTexture::Impl::choose_low_res(int left, std::vector<ComposeJob>& jobs) {
+    std::vector<LowResPage> better;
+    for (int i = 0; i < pool.place_count(); ++i) {
+        const PagePool::Place& p = pool.place(i);
+        // One that was composed in this frame has clean inputs of its own already.
+        if (p.state == PagePool::State::free || !p.low_res || popularity[size_t(i)] == 0) continue;
+        const Inputs inputs = inputs_of(p.page);
+        const bool ready = inputs.state == InputState::ready, due = p.retry_frame <= frame;
+        if (ready || (due && inputs.state == InputState::low_res && inputs.page.level < p.input_level))
+            better.push_back({i, popularity[size_t(i)], p.input_level - inputs.page.level, ready});
+        else if (due)
+            pool.mark_low_res(i, p.input_level, frame);
+    }
+    order_low_res(better);
+    for (const LowResPage& page : better) {
+        if (left-- <= 0) return;
+        const Inputs inputs = inputs_of(pool.place(page.place).page);
+        jobs.push_back(make_job(page.place, kWholePage, inputs.page));
+        if (page.final)
+            pool.clear_low_res(page.place);
+        else
+            pool.mark_low_res(page.place, inputs.page.level, frame);
+        pool.clear_dirty(page.place);
+    }
 }
 
 std::vector<ComposeJob> VirtualTexture::Impl::choose_jobs(const TextureView& view) {
     stale_inputs.clear();
-    index.map().for_each_resident([&](const MapPage& page, int, const TexelRect& dirty) {
-        if (!dirty.empty()) stale_inputs.insert(page);
+    index.map().for_each_resident([&](const MapPage& page, int, const TexelRect& stale) {
+        if (!stale.empty()) stale_inputs.insert(page);
     });
+    const auto texels_of = [](const std::vector<ComposeJob>& jobs) {
+        return std::accumulate(jobs.begin(), jobs.end(), int64_t(0),
+                               [](int64_t sum, const ComposeJob& job) { return sum + job.rect.area(); });
+    };
+    // What was edited and is in view, then what is missing, then what could be better.
     std::vector<ComposeJob> jobs;
-    retry_low_res(jobs);
     choose_dirty(jobs);
-    choose_missing(view, jobs);
-    composed_texels = 0;
-    for (const ComposeJob& job : jobs) {
-        composed_texels += job.rect.area();
-        ++counted.rects_composed;
-        counted.texels_composed += uint64_t(job.rect.area());
-    }
+    const int left = choose_missing(pages_left(view, texels_of(jobs)), jobs);
+    choose_low_res(left, jobs);
+    std::erase_if(dirty, [&](const DirtyPage& d) { return pool.place(d.place).dirty.empty(); });
+    composed_texels = texels_of(jobs);
+    counted.rects_composed += jobs.size();
+    counted.texels_composed += uint64_t(composed_texels);
+    for (const ComposeJob& job : jobs)
+        facts.composed(job.target.y * desc.pages_per_side + job.target.x, job.rect.area(), frame);
     return jobs;
 }
 
@@ -393,7 +407,7 @@ void VirtualTexture::request_inputs(const TextureView& view) {
         t.index.request(from, priority);
         priority -= 1.0f;
     };
-    for (const int place : t.dirty_order) ask(t.pool.place(place).page, kInputLookahead);
+    for (const DirtyPage& d : t.dirty) ask(t.pool.place(d.place).page, kInputLookahead);
     for (int i = 0; i < t.pool.place_count(); ++i)
         if (t.pool.place(i).low_res && t.popularity[size_t(i)] > 0)
             ask(t.pool.place(i).page, 2 * kInputLookahead);
@@ -418,8 +432,9 @@ void VirtualTexture::on_dirt(std::span<const WorldRect> rects) {
         if (dirty.empty()) continue;
         ++t.counted.pages_dirtied;
         t.pool.mark_dirty(i, dirty);
+        t.facts.dirtied(i, t.frame);
     }
-    t.order_dirty();
+    t.gather_dirty();
 }
 
 void VirtualTexture::on_index_dirt(std::span<const WorldRect> rects) {

@@ -6,6 +6,7 @@ LOAM_BEGIN_SHARED
 
 // G-buffer (RGBA16F): x, y normal of the height field (z is positive), z log2 of the pixel footprint's long axis on the ground plane in metres,
 // w log2 of its short axis in metres. Footprints are of the terrain's x, y coordinates, as the virtual texture is projected from above.
+// Beside it (RG8): x ambient occlusion, y direction of the long axis (shaders/geometry/pixel_ellipse_math.h).
 
 #define kCascadeCount 4
 

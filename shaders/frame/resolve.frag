@@ -6,19 +6,14 @@
 #define VT_FIRST_SLOT 5
 #include "shaders/frame/resolve_common.glsl"
 #include "shaders/texture/vt_sample.glsl"
-#include "shaders/frame/debug_view.glsl"
-
-layout(constant_id = 1) const bool kDebug = false;
 
 void main() {
     Pixel p = read_pixel();
     ivec2 sector;
     vec2 offset_m;
     vt_split(p.rel_m.xy, sector, offset_m);
-    VtSample t = vt_sample(sector, offset_m, p.log2_long, p.log2_short);
+    VtSample t = vt_sample(sector, offset_m, p.log2_long, p.log2_short, p.axis);
     VtMaterial m = t.material;
     Surface s = Surface(m.albedo, bent_normal(p.ground, m.normal), m.gloss, m.occlusion, m.metalness);
-    vec3 color = lit_pixel(p, s);
-    if (kDebug) color = debug_color(p, s, t, color);
-    out_color = vec4(color, 1.0);
+    out_color = vec4(lit_pixel(p, s), 1.0);
 }

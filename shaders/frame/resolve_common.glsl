@@ -5,6 +5,7 @@
 #include "shaders/frame/frame_io.h"
 #include "shaders/frame/resolve_io.h"
 #include "shaders/frame/lighting.glsl"
+#include "shaders/geometry/pixel_ellipse_math.h"
 
 layout(constant_id = 0) const bool kFine = true; // five shadow taps
 layout(binding = 0, scalar) readonly buffer Frame { FrameUniforms u; };
@@ -19,6 +20,7 @@ struct Pixel {
     vec3 rel_m;     // camera-relative
     vec3 ground;    // normal of the height field
     float log2_long, log2_short; // footprint axes, metres
+    vec2 axis;      // direction of the long one
     float sky_open; // ambient occlusion of the height field
 };
 
@@ -33,7 +35,9 @@ Pixel read_pixel() {
     p.ground = vec3(g.xy, sqrt(max(1.0 - dot(g.xy, g.xy), 1e-4)));
     p.log2_long = g.z;
     p.log2_short = g.w;
-    p.sky_open = texelFetch(occlusion_image, at, 0).r;
+    vec2 o = texelFetch(occlusion_image, at, 0).rg;
+    p.sky_open = o.x;
+    p.axis = decode_axis(o.y);
     return p;
 }
 

@@ -25,6 +25,7 @@ layout(push_constant, scalar) uniform Push {
 layout(location = 0) out vec3 out_rel_m;         // camera-relative position
 layout(location = 1) out vec2 out_texel;         // where in the page's normals, texels
 layout(location = 2) flat out uint out_slot;
+layout(location = 3) flat out uint out_level;    // debug views
 
 invariant gl_Position;
 
@@ -50,5 +51,6 @@ void main() {
     float texel_m = push.step_m * float(instance.stride) / float(kPatchQuadTexels);
     out_texel = vec2(texel) - (free_m - place_m) / texel_m;
     out_slot = instance.slot;
+    out_level = instance.level;
     gl_Position = push.clip_from_rel * vec4(place_m, z_m, 1.0);
 }

@@ -16,7 +16,7 @@ void main() {
     ivec2 sector;
     vec2 offset;
     vt_split(queries[i].rel_m, sector, offset);
-    VtSample s = vt_sample(sector, offset, queries[i].log2_texel, queries[i].log2_texel);
+    VtSample s = vt_sample(sector, offset, queries[i].log2_texel, queries[i].log2_texel, vec2(1.0, 0.0));
     answers[i * 4u] = vec4(s.material.albedo, s.material.gloss);
     answers[i * 4u + 1u] = vec4(s.material.normal, s.material.occlusion, s.material.metalness);
     answers[i * 4u + 2u] = s.material.channels;

@@ -4,10 +4,21 @@
 #define LOAM_TEXTURE_BLOCK_H
 #include "shaders/base/shared.h"
 // Arrays as parameters, in both languages.
+// LOAM_STATE … LOAM_END_STATE: variables and functions that use them; members of a struct in C++, globals in GLSL, where passing large
+// arrays would copy them, element by element, at every call.
+// LOAM_ROLLED: a loop that a shader compiler should leave one.
 #ifdef __cplusplus
 #define LOAM_ARRAY_IN(type, name, count) const type(&name)[count]
+#define LOAM_STATE(name) struct name {
+#define LOAM_STATE_WITH(name, base) struct name : base {
+#define LOAM_END_STATE };
+#define LOAM_ROLLED
 #else
 #define LOAM_ARRAY_IN(type, name, count) in type name[count]
+#define LOAM_STATE(name)
+#define LOAM_STATE_WITH(name, base)
+#define LOAM_END_STATE
+#define LOAM_ROLLED [[dont_unroll]]
 #endif
 LOAM_BEGIN_SHARED
 

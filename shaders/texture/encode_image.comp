@@ -2,6 +2,8 @@
 // Compresses an image to blocks in a buffer, row by row, one thread a block; a pipeline a format.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
+#extension GL_EXT_control_flow_attributes : require
+#include "shaders/texture/astc.h"
 #include "shaders/texture/bc1_fine.h"
 #include "shaders/texture/bc3.h"
 #include "shaders/texture/encode_io.h"
@@ -28,6 +30,12 @@ void main() {
     ivec2 at = ivec2(gl_GlobalInvocationID.xy);
     if (at.x >= push.blocks.x) return;
     uint block = uint(at.y * push.blocks.x + at.x);
+    if (kFormat == kEncodeAstc4x4 || kFormat == kEncodeAstc6x6) {
+        const int kSide = kFormat == kEncodeAstc4x4 ? 4 : 6;
+        LOAM_ROLLED for (int i = 0; i < kSide * kSide; ++i) astc_texels[i] = read_texel(at * kSide + ivec2(i % kSide, i / kSide));
+        write_block(block, astc_encode(kSide, push.weights));
+        return;
+    }
     vec4 texels[16];
     vec3 colours[16];
     float reds[16];

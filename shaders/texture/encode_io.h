@@ -9,6 +9,8 @@ LOAM_BEGIN_SHARED
 #define kEncodeBc1Fine 1 // 4, 8, rgb: for baking
 #define kEncodeBc3 2     // 4, 16, rgba
 #define kEncodeBc4 3     // 4, 8, r
+#define kEncodeAstc4x4 4 // 4, 16, rgba
+#define kEncodeAstc6x6 5 // 6, 16, rgba
 
 struct EncodeImagePush {
     ivec2 size;   // texels; blocks that reach over the edge repeat its texels

@@ -63,7 +63,8 @@ struct VtParams {
     float default_pages_per_sector; // finest pages of the default image a sector: 1, or less for maps above 16,384 m
     float default_log2_texel; // log2 of metres a finest texel of the default image
     float sector_log2_root;   // log2 of metres a texel of a live sector's root page
-    float anisotropy;         // wanted mip = mix(long axis, short axis, this)
+    float short_share;        // of the filter, see filter_math.h
+    float log2_taps;
 };
 
 // Which pixels a feedback dispatch looks at: one a cell.

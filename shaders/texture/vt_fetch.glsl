@@ -27,6 +27,14 @@ VtTexels vt_fetch(vec2 uv, float lod) {
     return t;
 }
 
+// By the sampler's anisotropy.
+VtTexels vt_fetch_grad(vec2 uv, vec2 dx, vec2 dy) {
+    VtTexels t = VtTexels(textureGrad(vt_atlas0, uv, dx, dy), textureGrad(vt_atlas1, uv, dx, dy), vec3(0), vec3(0));
+    if (kPageLayout == kPageRows) t.c = textureGrad(vt_atlas2, uv, dx, dy).rgb;
+    if (page_has_fourth(kPageChannels)) t.d = textureGrad(vt_atlas3, uv, dx, dy).rgb;
+    return t;
+}
+
 VtTexels vt_mix(VtTexels from, VtTexels to, float share) {
     return VtTexels(mix(from.a, to.a, share), mix(from.b, to.b, share), mix(from.c, to.c, share), mix(from.d, to.d, share));
 }

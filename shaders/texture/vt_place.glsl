@@ -2,6 +2,7 @@
 // Slots: VT_FIRST_SLOT + 0 VtParams (VirtualTexture::params()), + 1 sector table (VirtualTexture::sector_table()).
 #ifndef LOAM_TEXTURE_VT_PLACE_GLSL
 #define LOAM_TEXTURE_VT_PLACE_GLSL
+#include "shaders/texture/filter_math.h"
 #include "shaders/texture/texture_io.h"
 
 #ifndef VT_FIRST_SLOT
@@ -17,13 +18,15 @@ struct VtPlace {
     float wanted;   // mip, not limited below, at most the image's coarsest
     uint id;        // sector id
     int log2_width; // of the image
+    float log2_texel;  // wanted, metres
+    float log2_finest; // the image's finest, metres
 };
 
 VtPlace vt_place(ivec2 sector_delta, vec2 offset_m, float log2_long, float log2_short) {
     VtPlace place;
     ivec2 slot = clamp(sector_delta + kSectorTableSide / 2, ivec2(0), ivec2(kSectorTableSide - 1));
     uint entry = vt_table[slot.y * kSectorTableSide + slot.x];
-    float log2_texel = mix(log2_long, log2_short, vt.anisotropy) + vt.mip_bias;
+    float log2_texel = filter_log2_texel(log2_long, log2_short, vt.short_share, vt.log2_taps) + vt.mip_bias;
     // Coarser texels than the sector's root has come from the default image: what a pixel shows does not depend on which sectors
     // happen to be live. A footprint that is not a number goes there too.
     bool live = entry != 0u && log2_texel < vt.sector_log2_root + 1.0;
@@ -35,7 +38,9 @@ VtPlace vt_place(ivec2 sector_delta, vec2 offset_m, float log2_long, float log2_
     place.pages = live ? in_sector * float(1 << place.log2_width) : default_pages;
     place.cell = clamp(ivec2(floor(place.pages)), ivec2(0), ivec2((1 << place.log2_width) - 1));
     float coarsest = float(place.log2_width);
-    float wanted = log2_texel - (live ? vt.sector_log2_root - coarsest : vt.default_log2_texel);
+    place.log2_texel = log2_texel;
+    place.log2_finest = live ? vt.sector_log2_root - coarsest : vt.default_log2_texel;
+    float wanted = log2_texel - place.log2_finest;
     place.wanted = wanted < coarsest ? wanted : coarsest;
     return place;
 }

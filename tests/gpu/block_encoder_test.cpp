@@ -7,7 +7,8 @@
 #include "runtime/base/check.h"
 #include "runtime/gpu/frame_ring.h"
 #include "runtime/gpu/upload.h"
-#include "runtime/texture/block_encoder.h"
+#include "runtime/texture/block_decoder.h"
+#include "shaders/texture/astc.h"
 #include "shaders/texture/bc1_fine.h"
 #include "shaders/texture/bc3.h"
 #include "tests/gpu/test_device.h"
@@ -63,6 +64,16 @@ Words on_cpu(BlockFormat format, const Page& page) {
     };
     for (int by = 0; by < blocks; ++by)
         for (int bx = 0; bx < blocks; ++bx) {
+            if (format == BlockFormat::astc4x4 || format == BlockFormat::astc6x6) {
+                shared::AstcEncoder encoder{};
+                for (int i = 0; i < side * side; ++i) {
+                    const int x = std::min(bx * side + i % side, kSide - 1),
+                              y = std::min(by * side + i / side, kSide - 1);
+                    encoder.astc_texels[i] = page[size_t(y * kSide + x)];
+                }
+                put(encoder.astc_encode(side, kWeights));
+                continue;
+            }
             glm::vec4 texels[16];
             glm::vec3 colours[16];
             float reds[16];
@@ -83,6 +94,9 @@ Words on_cpu(BlockFormat format, const Page& page) {
                     break;
                 case BlockFormat::bc4:
                     put(shared::bc4_encode(reds));
+                    break;
+                case BlockFormat::astc4x4:
+                case BlockFormat::astc6x6:
                     break;
             }
         }
@@ -143,27 +157,23 @@ Page hard_page(uint32_t seed) {
 
 // Mean of the channels' weighted squared errors in steps of 255, of decoded blocks.
 double mean_error(BlockFormat format, const Words& words, const Page& page) {
-    const glm::vec4 weights(kWeights, format == BlockFormat::bc3 ? 1.0f : 0.0f);
-    const size_t of_block = size_t(shape_of(format).bytes) / 4;
+    glm::vec4 weights(kWeights, format == BlockFormat::bc1 || format == BlockFormat::bc1_fine ? 0.0f : 1.0f);
+    if (format == BlockFormat::bc4) weights = {1, 0, 0, 0};
+    const BlockShape shape = shape_of(format);
+    const int side = shape.side_texels, row = (kSide + side - 1) / side;
     double sum = 0;
-    for (int i = 0; i < kSide * kSide; ++i) {
-        const int x = i % kSide, y = i / kSide, inside = y % 4 * 4 + x % 4;
-        const uint32_t* w = &words[size_t(y / 4 * (kSide / 4) + x / 4) * of_block];
-        const glm::vec4 clean(shared::block_unit3(page[size_t(i)]), shared::block_unit(page[size_t(i)].w));
-        glm::vec4 d(0);
-        switch (format) {
-            case BlockFormat::bc1:
-            case BlockFormat::bc1_fine:
-                d = glm::vec4(shared::bc1_decode({w[0], w[1]}, inside), clean.w) - clean;
-                break;
-            case BlockFormat::bc3:
-                d = shared::bc3_decode({w[0], w[1], w[2], w[3]}, inside) - clean;
-                break;
-            case BlockFormat::bc4:
-                d.x = shared::bc4_decode({w[0], w[1]}, inside) - clean.x;
-                break;
+    std::vector<glm::vec4> shown(size_t(side * side));
+    for (size_t block = 0; block * size_t(shape.bytes) < words.size() * 4; ++block) {
+        decode_block(format, reinterpret_cast<const uint8_t*>(words.data()) + block * size_t(shape.bytes),
+                     shown.data());
+        for (int i = 0; i < side * side; ++i) {
+            const int x = int(block) % row * side + i % side, y = int(block) / row * side + i / side;
+            if (x >= kSide || y >= kSide) continue;
+            const glm::vec4& texel = page[size_t(y * kSide + x)];
+            const glm::vec4 clean(shared::block_unit3(texel), shared::block_unit(texel.w));
+            const glm::vec4 d = shown[size_t(i)] - clean;
+            sum += double(glm::dot(d * d, weights)) * 255 * 255;
         }
-        sum += double(glm::dot(d * d, weights)) * 255 * 255;
     }
     return sum / (kSide * kSide);
 }
@@ -202,13 +212,17 @@ const char* name_of(BlockFormat format) {
             return "Bc3";
         case BlockFormat::bc4:
             return "Bc4";
+        case BlockFormat::astc4x4:
+            return "Astc4x4";
+        case BlockFormat::astc6x6:
+            return "Astc6x6";
     }
     return "Unknown";
 }
 
 INSTANTIATE_TEST_SUITE_P(BlockEncoder, EachFormat,
                          ::testing::Values(BlockFormat::bc1, BlockFormat::bc1_fine, BlockFormat::bc3,
-                                           BlockFormat::bc4),
+                                           BlockFormat::bc4, BlockFormat::astc4x4, BlockFormat::astc6x6),
                          [](const auto& format) { return std::string(name_of(format.param)); });
 
 }  // namespace

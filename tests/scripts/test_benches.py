@@ -1,8 +1,10 @@
 """Every bench of the virtual texture runs, with the keys that docs/measurements.md quotes; figures are only checked to be possible."""
 import json
 
+import numpy as np
 import pytest
 from conftest import run_loam
+from PIL import Image
 
 pytestmark = pytest.mark.usefixtures("has_device")
 
@@ -88,12 +90,47 @@ def test_quality(plain):
     assert errors["paging"] == "equal" or errors["paging"] > 30  # the same texels, but for which pages are there
 
 
+def test_encoders(plain, tmp_path):
+    folder = tmp_path / "photographs" / "slope"
+    folder.mkdir(parents=True)
+    y, x = np.mgrid[0:256, 0:300]
+    Image.fromarray(np.dstack([x % 256, y, (x * y) % 256]).astype(np.uint8)).save(folder / "albedo.png")
+    tables = bench("encoders", plain, "--images", tmp_path / "photographs")
+    assert [title.split(",")[0].split(":")[0] for title, _ in tables] == ["BC1", "BC3", "BC4", "ASTC 4x4", "ASTC 6x6"] * 2
+    for title, rows in tables:
+        pages = [key for key in rows[0] if key in ("noise", "slope") or "layer" in key]
+        for row in rows:
+            assert all(5 < row[page] <= 99 for page in pages) and row["ms a page"] >= 0
+    (_, rows), *_ = tables
+    figures = {row["encoder"]: row for row in rows}
+    assert figures["Loam, fine"]["all"] > figures["Loam, live"]["all"]
+    assert figures["Loam, live"]["noise"] < 30
+
+
 def test_feedback(plain):
     ((_, rows),) = bench("feedback", plain)
     assert {row["values"] for row in rows} == {"coherent", "noise", "all different"}
     for row in rows:
         assert 0 < row["least ms"] <= row["median ms"] <= row["p99 ms"]
     assert [row["different"] for row in rows if row["values"] == "all different"] == [240 * 136] * 2
+
+
+def test_filter(plain, tmp_path):
+    ((_, rows),) = bench("filter", plain, "--size", "192x108", "--pictures", tmp_path)
+    by_name = {row["filter"]: row for row in rows}
+    assert list(by_name) == ["bilinear, moving", "bilinear", "trilinear", "tiles, 2 taps", "tiles, 4 taps", "tiles, 8 taps"]
+    for name, row in by_name.items():
+        assert row["settled"], name
+        assert row["resolve ms"] > 0 and row["of the floor"] > 0, name
+        assert 15 < row["PSNR dB"] < 99, name
+        shares = [row[key] for key in ("1 tap", "2 taps", "4 taps", "8 taps")]
+        if "tiles" in name:
+            assert sum(shares) == pytest.approx(1, abs=0.005), name
+            most = int(name.split()[1])
+            assert all(share == 0 for taps, share in zip((1, 2, 4, 8), shares) if taps > most), name
+        else:
+            assert shares == [None] * 4
+    assert len(list(tmp_path.glob("*.png"))) == len(rows) + 1
 
 
 def test_materials(plain):

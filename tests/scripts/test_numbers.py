@@ -57,6 +57,45 @@ def test_the_origin_and_the_far_corner_look_the_same(large):
         assert equal >= 0.999, (view, equal, difference.max())
 
 
+def error_db(picture, truth):
+    return -10 * math.log10(((picture[..., :3].astype(float) - truth[..., :3]) ** 2).mean() / 255 ** 2)
+
+
+def sharpness(picture):
+    """Mean square of the Laplacian of the luma."""
+    y = picture[..., :3].astype(float) @ (0.2126, 0.7152, 0.0722)
+    return ((4 * y[1:-1, 1:-1] - y[:-2, 1:-1] - y[2:, 1:-1] - y[1:-1, :-2] - y[1:-1, 2:]) ** 2).mean()
+
+
+@pytest.mark.usefixtures("has_device")
+@pytest.mark.parametrize("filter", ["trilinear", "tiles"])
+def test_a_drift_of_a_millimetre_is_as_sharp_and_steady_far_away(large, filter):
+    """An eye near the ground moves by a millimetre: a fraction of a pixel, and 2^-24 of the map."""
+    with loam.open(str(large)) as p:
+        for offset in (0.0, FAR_M):
+            make_scene(p, PLACE_M + offset, PLACE_M + offset)
+    figures = {}
+    for offset in (0.0, FAR_M):
+        at = PLACE_M + offset
+        with loam.open(str(large), read_only=True) as p:
+            pictures, truths = ([p.render((at - 15 + k * 0.001, at - 28, 101.6, 20, -14), size=(192, 108), **how)
+                                 for k in range(3)] for how in ({"filter": filter}, {"reference": True}))
+            assert p.stats()["settled"]
+        figures[offset] = {
+            "error": [error_db(a, b) for a, b in zip(pictures, truths)],
+            "sharp": [sharpness(a) / sharpness(b) for a, b in zip(pictures, truths)],
+            "step": [np.abs(a.astype(int) - b).mean() for a, b in zip(pictures, pictures[1:])],
+            "its own": [np.abs(a.astype(int) - b).mean() for a, b in zip(truths, truths[1:])]}
+        print(offset, figures[offset])
+    near, far = figures[0.0], figures[FAR_M]
+    np.testing.assert_allclose(far["error"], near["error"], atol=0.1)
+    np.testing.assert_allclose(far["sharp"], near["sharp"], rtol=0.01)
+    # Every step is seen, and none is larger than elsewhere.
+    assert min(near["step"] + far["step"]) > 0
+    np.testing.assert_allclose(far["step"], near["step"], rtol=0.1)
+    np.testing.assert_allclose(far["its own"], near["its own"], rtol=0.1)
+
+
 # From level ground and from a slope of the crater, where triangles of 2 m lie up to 0.2 m beside the queries' ground.
 LEVEL_M = -68.0
 EXTREME_VIEWS = [(at, z, pitch) for at in (LEVEL_M, 3.0) for z in (0.01, 1.7, 10_000.0) for pitch in (0.0, -90.0, 90.0, -1.0, -45.0)]

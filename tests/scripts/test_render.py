@@ -62,3 +62,32 @@ def test_info_has_a_memory_table(plain):
     assert done.returncode == 0, done.stderr
     figures = json.loads(done.stdout)
     assert figures["frame"]["memory_bytes"] and figures["devices"]
+
+
+
+
+def test_filters_differ_and_taps_are_nearest_to_the_reference(plain):
+    with loam.open(str(plain), validation=True) as p:
+        p.paint([(128, 90)], layer=p.layers[5], radius_m=25)
+        height = p.height(128, 60) + 2
+        view = (128, 60, height, 0, -6)
+        truth = p.render(view, size=(160, 90), reference=True).astype(float)[..., :3]
+        error = {}
+        for name in ("bilinear", "trilinear", "tiles", "hardware", "auto"):
+            picture = p.render(view, size=(160, 90), filter=name).astype(float)[..., :3]
+            assert p.stats()["settled"], name
+            error[name] = ((picture - truth) ** 2).mean()
+        print(error)
+        assert p.validation_messages() == 0
+        assert error["tiles"] < 0.9 * error["trilinear"]
+        assert error["hardware"] < 0.9 * error["trilinear"]
+        assert error["auto"] in (error["tiles"], error["hardware"])
+        with pytest.raises(loam.Error, match="unknown filter \"sharp\", expected one of auto, bilinear, trilinear, tiles, hardware"):
+            p.render(view, size=(16, 9), filter="sharp")
+
+
+def test_an_unknown_filter_on_the_command_line(plain, tmp_path):
+    done = run_loam("render", plain, "--filter", "sharp", "-o", tmp_path / "p.png")
+    assert done.returncode != 0 and "unknown filter \"sharp\"" in done.stderr
+    done = run_loam("render", plain, "--filter", "tiles", "-o", tmp_path / "p.png", "--size", "64x36", "--validation")
+    assert done.returncode == 0, done.stderr

@@ -202,6 +202,32 @@ TEST(Bc1, WeightsMoveTheErrorToTheOtherChannels) {
     EXPECT_GT(green.x + green.z, even.x + even.z);
 }
 
+// A normal's X in green between two channels that say something else.
+TEST(Bc1, AChannelThatWeighsNothingCostsTheOthersNothing) {
+    std::mt19937 random(26);
+    double alone = 0, among = 0, of_grey = 0;
+    for (int n = 0; n < 300; ++n) {
+        vec3 texels[16], grey[16];
+        for (int i = 0; i < 16; ++i) {
+            texels[i] = random_colour(random);
+            grey[i] = vec3(texels[i].y);
+        }
+        for (const bool fine : {false, true}) {
+            const auto encode = [&](const vec3(&t)[16], vec3 weights) {
+                return fine ? bc1_encode_fine(t, weights) : bc1_encode(t, weights);
+            };
+            alone += bc1_error(encode(texels, vec3(0, 1, 0)), texels, vec3(0, 1, 0));
+            among += bc1_error(encode(texels, vec3(1)), texels, vec3(0, 1, 0));
+            of_grey += bc1_error(encode(grey, vec3(0, 1, 0)), grey, vec3(0, 1, 0));
+            const uvec2 nothing = encode(texels, vec3(0));
+            EXPECT_TRUE((nothing.x & 0xffffu) > nothing.x >> 16u || nothing.y == 0)
+                << "still of four colours";
+        }
+    }
+    EXPECT_NEAR(alone, of_grey, of_grey * 0.02) << "as if the others were not there";
+    EXPECT_LT(alone, among * 0.25);
+}
+
 TEST(Bc1, WhatIsNoNumberCountsAsZeroAndTheRestIsClamped) {
     std::mt19937 random(25);
     vec3 bad[16], good[16];

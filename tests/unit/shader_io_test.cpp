@@ -9,8 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "runtime/gpu/embedded_shaders.h"
+#include "shaders/frame/debug_io.h"
 #include "shaders/frame/frame_io.h"
 #include "shaders/frame/resolve_io.h"
+#include "shaders/frame/tiles_io.h"
 #include "shaders/geometry/geometry_io.h"
 #include "shaders/texture/compose_io.h"
 #include "shaders/texture/texture_io.h"
@@ -80,7 +82,17 @@ TEST(ShaderIo, FrameUniforms) {
 
 TEST(ShaderIo, ResolvePush) {
     expect_layout("ResolvePush", sizeof(shared::ResolvePush),
-                  {AT(ResolvePush, debug_view), AT(ResolvePush, footprint_bias)});
+                  {AT(ResolvePush, debug_view), AT(ResolvePush, footprint_bias), AT(ResolvePush, first_tile), AT(ResolvePush, tiles_across)});
+}
+
+TEST(ShaderIo, ClassifyPush) {
+    expect_layout("ClassifyPush", sizeof(shared::ClassifyPush),
+                  {AT(ClassifyPush, picture_px), AT(ClassifyPush, tiles), AT(ClassifyPush, short_share), AT(ClassifyPush, log2_taps)});
+}
+
+TEST(ShaderIo, TileDraw) {
+    expect_layout("TileDraw", sizeof(shared::TileDraw),
+                  {AT(TileDraw, vertex_count), AT(TileDraw, instance_count), AT(TileDraw, first_vertex), AT(TileDraw, first_instance)});
 }
 
 TEST(ShaderIo, VtParams) {
@@ -88,12 +100,20 @@ TEST(ShaderIo, VtParams) {
                   {AT(VtParams, camera_sector), AT(VtParams, camera_offset_m), AT(VtParams, table_origin),
                    AT(VtParams, default_log2_width), AT(VtParams, inv_atlas_pages),
                    AT(VtParams, mip_bias), AT(VtParams, frame), AT(VtParams, flags), AT(VtParams, default_pages_per_sector),
-                   AT(VtParams, default_log2_texel), AT(VtParams, sector_log2_root), AT(VtParams, anisotropy)});
+                   AT(VtParams, default_log2_texel), AT(VtParams, sector_log2_root), AT(VtParams, short_share), AT(VtParams, log2_taps)});
 }
 
 TEST(ShaderIo, FeedbackPush) {
     expect_layout("FeedbackPush", sizeof(shared::FeedbackPush),
                   {AT(FeedbackPush, cells), AT(FeedbackPush, jitter), AT(FeedbackPush, footprint_log2)});
+}
+
+TEST(ShaderIo, DebugFacts) {
+    expect_layout("VtPlaceFacts", sizeof(shared::VtPlaceFacts),
+                  {AT(VtPlaceFacts, state), AT(VtPlaceFacts, age), AT(VtPlaceFacts, popularity), AT(VtPlaceFacts, dirt),
+                   AT(VtPlaceFacts, cost), AT(VtPlaceFacts, decals)});
+    expect_layout("VtImageSquare", sizeof(shared::VtImageSquare),
+                  {AT(VtImageSquare, x), AT(VtImageSquare, y), AT(VtImageSquare, size), AT(VtImageSquare, id)});
 }
 
 TEST(ShaderIo, ADifferentLayoutIsFound) {

@@ -1,6 +1,8 @@
 // The invariants of the page pool under random traffic.
+#include <algorithm>
 #include <map>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -103,6 +105,112 @@ TEST(PagePool, APageThatLacksInputsIsTriedAtGrowingIntervals) {
     pool.clear_low_res(place);
     pool.mark_low_res(place, 3, 200);
     EXPECT_EQ(pool.place(place).retry_frame, 215u) << "from the start again";
+}
+
+// What happened to a place, in order.
+struct PoolEvent {
+    enum class Kind { left_tree, taken, revived } kind;
+    int place;
+    uint64_t frame;
+    uint64_t last_requested;  // of the page that was in the place
+    uint64_t oldest;          // last request of the oldest page that could be taken, for `taken`
+};
+
+// Empty: no place was handed out within three frames of its page leaving the tree, and always the oldest was.
+std::string pool_fault(const std::vector<PoolEvent>& events) {
+    std::map<int, uint64_t> left;
+    for (const PoolEvent& e : events) {
+        if (e.kind == PoolEvent::Kind::left_tree) left[e.place] = e.frame;
+        if (e.kind == PoolEvent::Kind::revived) left.erase(e.place);
+        if (e.kind != PoolEvent::Kind::taken) continue;
+        if (left.contains(e.place) && e.frame < left[e.place] + 3) return "handed out within three frames";
+        if (e.last_requested > e.oldest) return "an older page was left";
+        left.erase(e.place);
+    }
+    return "";
+}
+
+std::vector<PoolEvent> pool_traffic(uint32_t seed, const PagePoolRules& rules) {
+    std::mt19937 random(seed);
+    PagePool pool(4, rules);
+    (void)pool.take(PageId{}, 1);
+    std::vector<PoolEvent> events;
+    for (uint64_t frame = 2; frame < 1500; ++frame) {
+        pool.promote(frame, [](int) {});
+        for (int i = 0; i < 2; ++i) {
+            const PageId wanted = page(int(random() % 50));
+            if (const int found = pool.find(wanted); found >= 0) {
+                pool.touch(found, frame);
+                if (pool.place(found).state != State::resting) continue;
+                pool.revive(found, frame);
+                events.push_back({PoolEvent::Kind::revived, found, frame, 0, 0});
+                continue;
+            }
+            uint64_t oldest = UINT64_MAX;
+            std::vector<uint64_t> requested;
+            for (int p = 0; p < pool.place_count(); ++p) {
+                const PagePool::Place& place = pool.place(p);
+                requested.push_back(place.last_requested);
+                if (place.state == State::resting && place.changed + PagePool::kRestFrames <= frame)
+                    oldest = std::min(oldest, place.last_requested);
+            }
+            const int place = pool.take(wanted, frame);
+            if (place >= 0)
+                events.push_back({PoolEvent::Kind::taken, place, frame, requested[size_t(place)], oldest});
+        }
+        const auto old = pool.retirable(frame);
+        if (old.empty()) continue;
+        EXPECT_GE(frame - pool.place(old[0]).last_requested, uint64_t(rules.age_frames));
+        pool.retire(old[0], frame);
+        events.push_back({PoolEvent::Kind::left_tree, old[0], frame, 0, 0});
+    }
+    return events;
+}
+
+TEST(PagePool, NoPlaceIsHandedOutWithinThreeFramesAndTheOldestIsFirst) {
+    for (const int age : {1, 3, 10})
+        for (uint32_t seed = 1; seed < 6; ++seed) {
+            const auto events = pool_traffic(seed, {.age_frames = age});
+            EXPECT_EQ(pool_fault(events), "");
+            EXPECT_GT(std::count_if(events.begin(), events.end(),
+                                    [](const PoolEvent& e) { return e.kind == PoolEvent::Kind::taken; }),
+                      100);
+        }
+}
+
+TEST(PagePool, APlaceHandedOutTooSoonOrOutOfOrderIsFound) {
+    const auto events = pool_traffic(2, {});
+    auto early = events, unordered = events;
+    // A recycled place, handed out two frames after its page left; and one while an older page was there.
+    std::map<int, uint64_t> left;
+    for (PoolEvent& e : early) {
+        if (e.kind == PoolEvent::Kind::left_tree) left[e.place] = e.frame;
+        if (e.kind == PoolEvent::Kind::taken && left.contains(e.place)) {
+            e.frame = left[e.place] + 2;
+            break;
+        }
+    }
+    EXPECT_EQ(pool_fault(early), "handed out within three frames");
+    for (PoolEvent& e : unordered)
+        if (e.kind == PoolEvent::Kind::taken && e.oldest != UINT64_MAX) {
+            e.last_requested = e.oldest + 1;
+            break;
+        }
+    EXPECT_EQ(pool_fault(unordered), "an older page was left");
+}
+
+TEST(PagePool, WaitsAndAgesAreSettings) {
+    PagePool pool(3, {.age_frames = 7, .first_retry_frames = 2, .last_retry_frames = 4});
+    const int place = pool.take(page(1), 10);
+    pool.promote(11, [](int) {});
+    EXPECT_TRUE(pool.retirable(16).empty());
+    EXPECT_EQ(pool.retirable(17), std::vector<int>{place});
+    pool.mark_low_res(place, 4, 10);
+    EXPECT_EQ(pool.place(place).retry_frame, 12u);
+    pool.mark_low_res(place, 4, 12);
+    EXPECT_EQ(pool.place(place).retry_frame, 16u);
+    pool.mark_low_res(place, 4, 16);
+    EXPECT_EQ(pool.place(place).retry_frame, 20u) << "at most the last";
 }
 
 }  // namespace

@@ -270,6 +270,42 @@ TEST(CameraController, StaysAboveTheGroundUnlessToldOtherwise) {
     EXPECT_NEAR(c.camera().position_m.z, 5, 1e-9);
 }
 
+TEST(CameraController, AJumpWaitsForItsPagesButNotForLong) {
+    const Camera far{.position_m = {900, 900, 300}, .yaw_rad = 1};
+    CameraController c = controller({.position_m = {0, 0, 50}});
+    EXPECT_FALSE(c.destination());
+    c.jump_to(far);
+    ASSERT_TRUE(c.destination());
+    EXPECT_EQ(c.destination()->position_m, far.position_m);
+    EXPECT_TRUE(c.update({.dt_s = 0.02}));
+    EXPECT_TRUE(c.moving());
+    EXPECT_EQ(c.camera().position_m, glm::dvec3(0, 0, 50));
+    c.arrive();
+    EXPECT_EQ(c.camera().position_m, far.position_m);
+    EXPECT_FALSE(c.moving() || c.destination());
+    // Nobody says that it is ready.
+    c.jump_to({.position_m = {0, 0, 50}});
+    double waited_s = 0;
+    while (c.moving()) c.update({.dt_s = 0.02}), waited_s += 0.02;
+    EXPECT_NEAR(waited_s, CameraController::kLongestWait_s, 0.03);
+    EXPECT_EQ(c.camera().position_m, glm::dvec3(0, 0, 50));
+    // Steering ends it.
+    c.jump_to(far);
+    c.update({.drag = CameraInput::Drag::look, .dt_s = 0.02});
+    EXPECT_FALSE(c.destination());
+}
+
+TEST(CameraController, AFlightTellsWhereItEnds) {
+    CameraController c = controller({.position_m = {100, -500, 300}, .yaw_rad = 0.7, .pitch_rad = -0.3});
+    c.frame({20, 30, 4}, 12);
+    ASSERT_TRUE(c.destination());
+    const Camera told = *c.destination();
+    for (int i = 0; i < 40; ++i) c.update({.dt_s = 0.02});
+    EXPECT_LT(glm::length(c.camera().position_m - told.position_m), 1e-9);
+    EXPECT_EQ(c.camera().pitch_rad, told.pitch_rad);
+    EXPECT_FALSE(c.destination());
+}
+
 TEST(CameraController, FramingBringsTheTargetToTheMiddle) {
     CameraController c = controller({.position_m = {100, -500, 300}, .yaw_rad = 0.7, .pitch_rad = -0.3});
     const glm::dvec3 target(20, 30, 4);

@@ -213,6 +213,57 @@ def test_resize_and_cameras(display, opened):
     closed_cleanly(window, display)
 
 
+def menu_item(display, window, title_x, steps):
+    """Opens a menu of the bar and chooses the entry after so many steps down, as a person would by keys."""
+    display.click(title_x, 16)
+    window.settle(quiet_s=0.4)
+    display.key(*["Down"] * steps, "Return")
+
+
+# Where the titles are: File, Edit, View, Debug, … at the left of the bar.
+VIEW_X, DEBUG_X = 104, 153
+DEBUG_ENTRIES = ("none", "mips", "sectors")
+VIEW_QUALITY_ENTRY = {"very_low": 10, "mid": 12}  # entries before the qualities: camera 3, shading 1, resolution 4, outline 1
+
+
+def test_quality_and_debug_views_from_the_menu(display, opened):
+    window = opened()
+    away(display, window)
+    start = display.screenshot()
+    x, y, w, h = window.last("viewport")["rect"]
+    middle, half = (int(x + w / 2), int(y + h / 2)), int(min(w, h) * 0.3)
+
+    menu_item(display, window, DEBUG_X, 1 + DEBUG_ENTRIES.index("mips"))
+    away(display, window)
+    mips = display.screenshot()
+    keep("debug_mips.png", mips)
+    assert changed_share(start, mips, middle, half) > 0.5, "the view of mips looks like the picture"
+    menu_item(display, window, DEBUG_X, 1 + DEBUG_ENTRIES.index("sectors"))
+    away(display, window)
+    sectors = display.screenshot()
+    keep("debug_sectors.png", sectors)
+    assert changed_share(mips, sectors, middle, half) > 0.3
+    legend = (int(x + 60), int(y + h - 30))
+    assert changed_share(start, sectors, legend, 10) > 0.3, "no legend"
+    menu_item(display, window, DEBUG_X, 1)
+    away(display, window)
+    assert changed_share(start, display.screenshot(), middle, half) == 0, "the final picture is another one than before"
+
+    # Another size of the texture: reported, the picture is as sharp or sharper, and back again it is the same.
+    before = window.last("texture")
+    menu_item(display, window, VIEW_X, VIEW_QUALITY_ENTRY["mid"])
+    away(display, window)
+    after = window.last("texture")
+    assert after != before and after["quality"] == "mid" and after["pages"] == 22 * 22
+    keep("quality_mid.png", display.screenshot())
+    menu_item(display, window, VIEW_X, VIEW_QUALITY_ENTRY["very_low"])
+    away(display, window)
+    assert window.last("texture")["pages"] == 13 * 13
+    keep("quality_very_low.png", display.screenshot())
+    assert window.commands() == [], "a view is no edit"
+    closed_cleanly(window, display)
+
+
 def test_a_missing_project_is_one_sentence_and_a_failure(display, tmp_path):
     run = subprocess.run([LOAM, "edit", str(tmp_path / "nowhere")], env=display.environment, capture_output=True, text=True)
     assert run.returncode != 0

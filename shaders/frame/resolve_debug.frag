@@ -1,0 +1,19 @@
+// Debug views of the picture: the resolve (resolve.frag), then colours that say where its texels come from.
+#version 460
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_scalar_block_layout : require
+#define VT_FIRST_SLOT 5
+#include "shaders/frame/resolve_common.glsl"
+#include "shaders/texture/vt_sample.glsl"
+#include "shaders/frame/debug_view.glsl"
+
+void main() {
+    Pixel p = read_pixel();
+    ivec2 sector;
+    vec2 offset_m;
+    vt_split(p.rel_m.xy, sector, offset_m);
+    VtSample t = vt_sample(sector, offset_m, p.log2_long, p.log2_short, p.axis);
+    VtMaterial m = t.material;
+    Surface s = Surface(m.albedo, bent_normal(p.ground, m.normal), m.gloss, m.occlusion, m.metalness);
+    out_color = vec4(debug_color(p, s, t, lit_pixel(p, s)), 1.0);
+}
