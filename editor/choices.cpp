@@ -13,6 +13,7 @@ constexpr QualityName kQualities[] = {{"very_low", "very low, 13² pages", Quali
                                       {"ultra", "ultra, 42² pages", Quality::ultra}};
 constexpr PageFormatName kFormats[] = {{"bc1", "3 x BC1", PageFormat::bc1x3},
                                        {"bc3", "2 x BC3", PageFormat::bc3x2},
+                                       {"bc1x4", "4 x BC1", PageFormat::bc1x4},
                                        {"rgba8", "uncompressed", PageFormat::rgba8}};
 
 struct FilterName {

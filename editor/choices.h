@@ -22,7 +22,7 @@ struct PageFormatName {
 [[nodiscard]] std::span<const PageFormatName> page_format_names();
 [[nodiscard]] const QualityName& quality_name(Quality quality);
 [[nodiscard]] Result<Quality> parse_quality(std::string_view name);               // very_low … ultra
-[[nodiscard]] Result<PageFormat> parse_page_format(std::string_view name);        // bc1, bc3, rgba8
+[[nodiscard]] Result<PageFormat> parse_page_format(std::string_view name);        // bc1, bc3, bc1x4, rgba8
 [[nodiscard]] Result<std::optional<Filter>> parse_filter(std::string_view name);  // auto, bilinear, …
 [[nodiscard]] Result<DebugView> parse_debug_view(std::string_view name);          // none, mips, sectors, …
 

@@ -47,7 +47,11 @@ Json to_report(const ProjectSettings& s) {
         }
         row["file"] = layer.file;
         row["tile_m"] = layer.tile_m;
+        for (size_t c = 0; c < kChannelNames.size(); ++c)
+            if (layer.channels[c] != 0) row[kChannelNames[c]] = layer.channels[c];
     }
+    Json channels = Json::array();
+    for (const Channel channel : s.channels) channels.push_back(kChannelNames[size_t(channel)]);
     return {{"name", s.name},
             {"size_m", {bounds.width(), bounds.height()}},
             {"height_samples", {s.height_samples_x, s.height_samples_y}},
@@ -61,6 +65,7 @@ Json to_report(const ProjectSettings& s) {
              {{"distortion_amplitude_m", s.ground.distortion_amplitude_m},
               {"distortion_period_m", s.ground.distortion_period_m},
               {"tile_hiding", s.ground.tile_hiding}}},
+            {"channels", channels},
             {"layers", layers}};
 }
 

@@ -31,10 +31,12 @@ double layers_met(const IndexTexel* texels) {
 
 Status bench_pages(Stage& stage, PageFormat format, BenchTable& table) {
     const TextureLayout layout = texture_layout(stage.document.bounds());
-    auto atlas = make_page_atlas(stage.device, page_textures(format), 2, 2);
+    auto textures = page_textures(format, stage.document.settings().channels);
+    if (!textures) return textures.error();
+    auto atlas = make_page_atlas(stage.device, *textures, 2, 2);
     if (!atlas) return atlas.error();
-    auto composer = Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout,
-                                     page_textures(format), true);
+    auto composer =
+        Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout, *textures, true);
     if (!composer) return composer.error();
     // The plainest and the busiest page of two texels an index texel.
     ComposeJob plainest, busiest;
@@ -210,14 +212,15 @@ Result<BenchReport> bench_compose(const BenchRequest& request) {
     auto stage = Stage::create(**device, **document);
     if (!stage) return stage.error();
     BenchReport report;
-    for (const PageFormat format : {PageFormat::rgba8, PageFormat::bc1x3, PageFormat::bc3x2}) {
+    const std::vector<Channel>& channels = (*document)->settings().channels;
+    for (const PageFormat format :
+         {PageFormat::rgba8, format_with_room(PageFormat::bc1x3, channels.size()), PageFormat::bc3x2}) {
         if (is_compressed(format) && !(*device)->caps().bc) continue;
-        const char* name = format == PageFormat::rgba8   ? "RGBA8 pages"
-                           : format == PageFormat::bc1x3 ? "BC1 pages"
-                                                         : "BC3 pages";
-        report.push_back({fmt::format("{}: rectangles composed, best of {}", name, kRepeats), {}});
+        if (!page_textures(format, channels)) continue;
+        const char* name = page_format_name(format);
+        report.push_back({fmt::format("{} pages: rectangles composed, best of {}", name, kRepeats), {}});
         LOAM_TRY(bench_pages(*stage, format, report.back()));
-        report.push_back({fmt::format("{}: edits, best of {}", name, kRepeats), {}});
+        report.push_back({fmt::format("{} pages: edits, best of {}", name, kRepeats), {}});
         LOAM_TRY(bench_edits(*stage, format, report.back()));
     }
     return report;

@@ -78,11 +78,12 @@ Result<std::array<Texels, 3>> composed(Stage& stage, const TextureLayout& layout
         LOAM_TRY(stage.make_resident(job.index_page));
         job.index_slot = stage.index->map().slot_of(job.index_page);
     }
-    auto atlas =
-        make_page_atlas(stage.device, page_textures(PageFormat::rgba8), static_cast<int>(jobs.size()), 1);
+    auto textures = page_textures(PageFormat::rgba8, {});
+    if (!textures) return textures.error();
+    auto atlas = make_page_atlas(stage.device, *textures, static_cast<int>(jobs.size()), 1);
     if (!atlas) return atlas.error();
     auto composer = Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout,
-                                     page_textures(PageFormat::rgba8), true);
+                                     *textures, true);
     if (!composer) return composer.error();
     std::array<Texels, 3> bytes;
     auto ms = stage.timed_frame([&](gpu::Commands& commands) -> Status {

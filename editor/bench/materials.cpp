@@ -96,11 +96,12 @@ Result<PageCost> page_cost(const std::filesystem::path& project, gpu::Device& de
     if (!document) return document.error();
     auto stage = Stage::create(device, **document);
     if (!stage) return stage.error();
-    auto atlas = make_page_atlas(device, page_textures(PageFormat::rgba8), 2, 2);
+    auto textures = page_textures(PageFormat::rgba8, (*document)->settings().channels);
+    if (!textures) return textures.error();
+    auto atlas = make_page_atlas(device, *textures, 2, 2);
     if (!atlas) return atlas.error();
-    auto composer =
-        Composer::create(device, **document, *stage->index, *stage->layers,
-                         texture_layout((*document)->bounds()), page_textures(PageFormat::rgba8), false);
+    auto composer = Composer::create(device, **document, *stage->index, *stage->layers,
+                                     texture_layout((*document)->bounds()), *textures, false);
     if (!composer) return composer.error();
     auto job = whole_page(*stage, kPage);
     if (!job) return job.error();
@@ -221,11 +222,13 @@ Status add_tile_hiding(const BenchRequest& request, gpu::Device& device, BenchTa
             if (!document) return document.error();
             auto stage = Stage::create(device, **document);
             if (!stage) return stage.error();
-            auto atlas = make_page_atlas(device, page_textures(PageFormat::rgba8), 1, 1);
+            auto textures = page_textures(PageFormat::rgba8, settings.channels);
+            if (!textures) return textures.error();
+            auto atlas = make_page_atlas(device, *textures, 1, 1);
             if (!atlas) return atlas.error();
             const TextureLayout layout = texture_layout((*document)->bounds());
-            auto composer = Composer::create(device, **document, *stage->index, *stage->layers, layout,
-                                             page_textures(PageFormat::rgba8), false);
+            auto composer =
+                Composer::create(device, **document, *stage->index, *stage->layers, layout, *textures, false);
             if (!composer) return composer.error();
             // About eight tiles wide.
             PageId page{{true, 1, 1}, 0, 0, 0};

@@ -20,8 +20,20 @@ struct Format {
     PageFormat format;
     const char* name;
 };
-constexpr Format kFormats[] = {
-    {PageFormat::rgba8, "3xRGBA8"}, {PageFormat::bc1x3, "3xBC1"}, {PageFormat::bc3x2, "2xBC3"}};
+constexpr Format kFormats[] = {{PageFormat::rgba8, "uncompressed"},
+                               {PageFormat::bc1x3, "3xBC1"},
+                               {PageFormat::bc1x4, "4xBC1"},
+                               {PageFormat::bc3x2, "2xBC3"}};
+
+// Those that hold the map's channels, each layout once.
+std::vector<Format> formats_for(const ProjectSettings& settings) {
+    std::vector<Format> formats;
+    for (const Format& format : kFormats) {
+        const bool as_bc1x3 = format.format == PageFormat::bc1x4 && settings.channels.size() <= 1;
+        if (!as_bc1x3 && page_textures(format.format, settings.channels).ok()) formats.push_back(format);
+    }
+    return formats;
+}
 
 // Real ground by file (README of the elevation data): metres = offset + sample * step.
 struct Ground {
@@ -169,9 +181,11 @@ Status measure_level(const BenchRequest& request, const std::filesystem::path& p
 Status measure_project(const BenchRequest& request, const std::string& name,
                        const std::filesystem::path& project, BenchReport& report) {
     std::vector<Scene> scenes;
+    std::vector<Format> formats;
     {
         auto session = open_read_only(project, request.session);
         if (!session) return session.error();
+        formats = formats_for((*session)->document().settings());
         auto views = views_of(request, **session);
         if (!views) return views.error();
         for (View& view : *views) scenes.push_back({.name = name, .view = std::move(view)});
@@ -188,7 +202,7 @@ Status measure_project(const BenchRequest& request, const std::string& name,
             LOAM_TRY(save("texels", scene.texels));
         }
     for (size_t level = 0; level < std::size(kLevels); ++level)
-        for (const Format& format : kFormats) {
+        for (const Format& format : formats) {
             if (request.quick && kLevels[level] != Quality::high) continue;
             LOAM_TRY(measure_level(request, project, level, format, scenes, report));
         }

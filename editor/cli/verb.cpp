@@ -52,7 +52,8 @@ std::vector<Option> with_device_options(std::vector<Option> options) {
         {"--validation", ValueKind::none, "", "Vulkan validation; its messages fail the command"},
         {"--quality", ValueKind::text, "Q",
          "very_low, low, mid, high or ultra: the size of the virtual texture"},
-        {"--format", ValueKind::text, "F", "bc1, bc3 or rgba8: the format of texture pages; default by device"},
+        {"--format", ValueKind::text, "F", 
+         "bc1, bc3, bc1x4 or rgba8: the format of texture pages; default by device and the map's channels"},
         {"--set", ValueKind::text, "NAME=VALUE[,…]",
          "figures of the renderer; loam info --settings lists them"},
     };

@@ -156,7 +156,8 @@ py::object operators(Project& p) {
                             {"y", c->y_m},
                             {"radius_m", c->radius_m},
                             {"depth_m", c->depth_m},
-                            {"seed", c->seed}});
+                            {"seed", c->seed},
+                            {"heat", c->heat}});
         if (const Footprint* f = std::get_if<Footprint>(&op.shape))
             row.update(Json{{"kind", "footprint"},
                             {"x", f->x_m},
@@ -223,13 +224,15 @@ void bind_edits(py::class_<Project>& c) {
         py::arg("tint") = py::none(), py::arg("seed") = 0, py::arg("group") = 0);
     c.def(
         "crater",
-        [](Project& p, double x, double y, double radius_m, double depth_m, uint32_t seed) {
+        [](Project& p, double x, double y, double radius_m, double depth_m, uint32_t seed, double heat) {
             Json j = {{"cmd", "crater"}, {"x", x}, {"y", y}, {"radius_m", radius_m}, {"seed", seed}};
             if (depth_m > 0) j["depth_m"] = depth_m;
+            if (heat != 0) j["heat"] = heat;
             return p.apply_json(j);
         },
-        "A crater; depth 0: two fifths of the radius.", py::arg("x"), py::arg("y"),
-        py::arg("radius_m") = 10.0, py::arg("depth_m") = 0.0, py::arg("seed") = 0);
+        "A crater; depth 0: two fifths of the radius; heat 0 … 1: embers, on maps with thermal or emissive.",
+        py::arg("x"), py::arg("y"), py::arg("radius_m") = 10.0, py::arg("depth_m") = 0.0, py::arg("seed") = 0,
+        py::arg("heat") = 0.0);
     c.def(
         "footprints",
         [](Project& p, const std::vector<std::array<double, 3>>& prints, double length_m, double depth_m,

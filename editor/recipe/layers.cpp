@@ -28,8 +28,8 @@ const std::vector<LayerRecipe>& layer_recipe_names() {
         {"dirt", "trodden soil with clods and pebbles", 2},
         {"scree", "angular stones of all sizes", 3},
         {"rock", "fractured beds with cracks and lichen", 4},
-        {"sand", "wind-rippled sand", 2},
-        {"snow", "wind-packed snow", 3},
+        {"sand", "wind-rippled sand", 2, {0, 0, 0, 0.4}},
+        {"snow", "wind-packed snow", 3, {0.8, 0, 0, 0.7}},
     };
     return names;
 }
@@ -53,7 +53,10 @@ Result<std::vector<LayerEntry>> make_layers_for(const std::filesystem::path& fol
     const auto& names = layer_recipe_names();
     std::vector<LayerEntry> entries;
     for (const LayerRecipe& n : names)
-        entries.push_back({n.name, "layers/" + std::string(n.name) + ".layer", n.tile_m});
+        entries.push_back({.name = n.name,
+                           .file = "layers/" + std::string(n.name) + ".layer",
+                           .tile_m = n.tile_m,
+                           .channels = n.channels});
     std::vector<std::optional<Error>> faults(names.size());
     const int count = static_cast<int>(names.size());
     parallel_ranges(count, 1, [&](int begin, int end) {

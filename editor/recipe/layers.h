@@ -3,6 +3,7 @@
 // comes from what lies there.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
@@ -17,7 +18,8 @@ namespace loam {
 struct LayerRecipe {
     const char* name;
     const char* description;
-    double tile_m;  // world size of one repeat
+    double tile_m;                                        // world size of one repeat
+    std::array<double, kChannelNames.size()> channels{};  // seen on maps that choose them
 };
 [[nodiscard]] const std::vector<LayerRecipe>& layer_recipe_names();
 

@@ -45,6 +45,10 @@ void crater_properties(ui::Ui& ui, App& app) {
     if (ui::slider(ui, "Depth", percent,
                    {.min = 5, .max = 100, .decimals = 0, .unit = "%", .tooltip = "Of the radius"}))
         settings.crater_depth_share = percent / 100;
+    double heat_percent = settings.crater_heat * 100;
+    if (ui::slider(ui, "Heat", heat_percent,
+                   {.min = 0, .max = 100, .decimals = 0, .unit = "%", .tooltip = "Embers, on maps with the emissive or thermal channel"}))
+        settings.crater_heat = heat_percent / 100;
     int seed = static_cast<int>(settings.seed);
     if (ui::slider(ui, "Seed", seed, {.min = 1, .max = 9999, .tooltip = "Each crater has its own shape"}))
         settings.seed = static_cast<uint32_t>(seed);

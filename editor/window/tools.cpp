@@ -135,7 +135,8 @@ std::optional<Command> ToolController::crater(const ToolInput& input) {
                                           .y_m = center_m_.y,
                                           .radius_m = radius,
                                           .depth_m = radius * settings.crater_depth_share,
-                                          .seed = settings.seed++}},
+                                          .seed = settings.seed++,
+                                          .heat = settings.crater_heat}},
                    .group = group_};
 }
 

@@ -7,7 +7,7 @@
 //   {"cmd":"paint","dabs":[[x,y],…],"radius_m":5,"layer":"rock","strength":1,"hardness":0.5,"seed":1,
 //    "min_slope_rad":0,"max_slope_rad":1.5708,"tint":[r,g,b],"transitions":false}   ("layer" or "tint" or both)
 //       transitions: the project's transitions are placed where layers meet, under the dabs and beside them (transitions.h)
-//   {"cmd":"crater","x":…,"y":…,"radius_m":10,"depth_m":4,"seed":7}
+//   {"cmd":"crater","x":…,"y":…,"radius_m":10,"depth_m":4,"seed":7,"heat":0.8}
 //   {"cmd":"footprints","prints":[{"x":…,"y":…,"heading_rad":…,"foot":0},…],"length_m":0.3,"depth_m":0.03,"seed":1}
 //       a print may have its own length_m, depth_m and seed; else print i has seed + i
 //   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}

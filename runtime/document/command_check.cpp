@@ -58,7 +58,8 @@ Status check(const PaintCommand& c) {
 Status check(const CraterCommand& c) {
     LOAM_TRY(place_ok("the crater", c.crater.x_m, c.crater.y_m));
     LOAM_TRY(in_range("radius_m", c.crater.radius_m, 0.1, 2000));
-    return in_range("depth_m", c.crater.depth_m, 0, 4000);
+    LOAM_TRY(in_range("depth_m", c.crater.depth_m, 0, 4000));
+    return in_range("heat", c.crater.heat, 0, 1);
 }
 
 Status check(const FootprintsCommand& c) {

@@ -170,6 +170,7 @@ Crater read_crater(Fields& fields) {
     crater.radius_m = fields.number("radius_m", crater.radius_m);
     crater.depth_m = fields.number("depth_m", crater.depth_m);
     crater.seed = uint32_t(fields.whole("seed", kMaxU32, 0));
+    crater.heat = fields.number("heat", crater.heat);
     return crater;
 }
 
@@ -179,6 +180,7 @@ void write_crater(Json& json, const Crater& crater) {
     json["radius_m"] = crater.radius_m;
     json["depth_m"] = crater.depth_m;
     json["seed"] = crater.seed;
+    if (crater.heat != 0) json["heat"] = crater.heat; // a cold crater reads as it always has
 }
 
 // What a print does not say itself comes from `shared`.

@@ -19,6 +19,7 @@ struct Crater {
     double radius_m = 10;     // of the rim's crest, 0.1 … 2000
     double depth_m = 0;       // bowl below the old ground; 0: radius * 0.4
     uint32_t seed = 0;        // irregular rim, rays, scorch pattern
+    double heat = 0;          // 0 … 1: embers on the floor, in the thermal and emissive channels of the texture
 };
 
 struct Footprint {

@@ -39,11 +39,13 @@ constexpr DebugViewInfo kViews[] = {
      "red frame: edited"},
     {DebugView::indirection_map, "indirection-map", "Indirection texture",
      "the whole texture, a colour a physical page; white rims: images of sectors"},
+    {DebugView::thermal, "thermal", "Heat", "the map's thermal channel: violet is cool, white is hot"},
 };
 static_assert(std::size(kViews) == size_t(DebugView::count));
 static_assert(uint32_t(DebugView::wanted) == kDebugWanted && uint32_t(DebugView::decals) == kDebugDecals &&
               uint32_t(DebugView::albedo) == kDebugAlbedo &&
-              uint32_t(DebugView::indirection_map) == kDebugIndirectionMap);
+              uint32_t(DebugView::indirection_map) == kDebugIndirectionMap &&
+              uint32_t(DebugView::thermal) == kDebugThermal);
 
 }  // namespace
 

@@ -32,6 +32,7 @@ enum class DebugView {
     heights,
     atlas,
     indirection_map,
+    thermal,
     count
 };
 

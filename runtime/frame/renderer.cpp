@@ -170,7 +170,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::Fra
 }
 
 PageFormat Renderer::Impl::page_format() const {
-    const PageFormat format = desc.page_format.value_or(defaults.page_format);
+    const PageFormat format = desc.page_format.value_or(
+        format_with_room(defaults.page_format, document.settings().channels.size()));
     return is_compressed(format) && !device.caps().bc ? PageFormat::rgba8 : format;
 }
 

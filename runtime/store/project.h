@@ -2,6 +2,7 @@
 // them; opening a project executes nothing from it.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -12,6 +13,11 @@
 #include "runtime/base/result.h"
 
 namespace loam {
+
+// What texture pages can hold beside a material, chosen for a whole map: [texture] channels = ["scattering",
+// …]. Numbered as kChannel… in shaders/texture/page_format.h.
+enum class Channel : uint8_t { scattering, thermal, emissive, glint };
+inline constexpr std::array<const char*, 4> kChannelNames = {"scattering", "thermal", "emissive", "glint"};
 
 struct LayerEntry {
     std::string name;     // "grass"; unique in a project
@@ -29,6 +35,7 @@ struct LayerEntry {
     };
     std::optional<Blend> blend{};
     bool operator==(const LayerEntry&) const = default;
+    std::array<double, kChannelNames.size()> channels{};  // amounts 0 … 1, by Channel
 };
 
 // Which layers events use, by name; an empty or unknown name falls back to layer 0.
@@ -58,6 +65,7 @@ struct ProjectSettings {
     std::vector<LayerEntry> layers;
     LayerRoles roles;
     GroundSettings ground;
+    std::vector<Channel> channels;  // that pages hold, each once
     double sun_azimuth_rad = 3.9;  // clockwise from north, where the sun stands
     double sun_elevation_rad = 0.6;
     double haze_per_km = 0.045;  // extinction at sea level, 1/km

@@ -105,21 +105,25 @@ LayerEntry layer_of(const toml::node& node) {
         layer.blend = blend;
     };
     const toml::table& table = table_of(node, "layer");
-    read_table(
-        table, "[[layer]]",
-        {{"name", [&](const toml::node& n) { layer.name = string_of(n, "name"); }},
-         {"file", [&](const toml::node& n) { layer.file = string_of(n, "file"); }},
-         {"tile_m", [&](const toml::node& n) { layer.tile_m = number_of(n, "tile_m", 0.01, 10000); }},
-         {"blend", read_blend},
-         {"threshold",
-          [&](const toml::node& n) {
-              blend.threshold = number_of(n, "threshold", 0, 1);
-              only_blends = &n;
-          }},
-         {"removed", [&](const toml::node& n) {
-              blend.removed = flag_of(n, "removed");
-              only_blends = &n;
-          }}});
+    Readers readers = {
+        {"name", [&](const toml::node& n) { layer.name = string_of(n, "name"); }},
+        {"file", [&](const toml::node& n) { layer.file = string_of(n, "file"); }},
+        {"tile_m", [&](const toml::node& n) { layer.tile_m = number_of(n, "tile_m", 0.01, 10000); }},
+        {"blend", read_blend},
+        {"threshold",
+         [&](const toml::node& n) {
+             blend.threshold = number_of(n, "threshold", 0, 1);
+             only_blends = &n;
+         }},
+        {"removed", [&](const toml::node& n) {
+             blend.removed = flag_of(n, "removed");
+             only_blends = &n;
+         }}};
+    for (size_t c = 0; c < kChannelNames.size(); ++c)
+        readers[kChannelNames[c]] = [&layer, c](const toml::node& n) {
+            layer.channels[c] = number_of(n, kChannelNames[c], 0, 1);
+        };
+    read_table(table, "[[layer]]", readers);
     if (layer.blend) {
         layer.blend->threshold = blend.threshold;
         layer.blend->removed = blend.removed;
@@ -128,6 +132,16 @@ LayerEntry layer_of(const toml::node& node) {
     }
     if (layer.name.empty()) refuse(node, "a layer needs a name");
     return layer;
+}
+
+Channel channel_of(const toml::node& node) {
+    const std::string name = string_of(node, "a channel");
+    std::string known;
+    for (size_t c = 0; c < kChannelNames.size(); ++c) {
+        if (name == kChannelNames[c]) return Channel(c);
+        known += fmt::format("{}{}", known.empty() ? "" : ", ", kChannelNames[c]);
+    }
+    refuse(node, "unknown channel \"{}\" in [texture] (known: {})", name, known);
 }
 
 ProjectSettings settings_of(const toml::table& root) {
@@ -185,16 +199,25 @@ ProjectSettings settings_of(const toml::table& root) {
     };
     const auto read_ground = [&](const toml::node& node) {
         GroundSettings& g = s.ground;
-        read_table(table_of(node, "ground"), "[ground]",
-                   {{"distortion_amplitude_m",
-                     [&](const toml::node& n) {
-                         g.distortion_amplitude_m = number_of(n, "distortion_amplitude_m", 0, 64);
-                     }},
-                    {"distortion_period_m",
-                     [&](const toml::node& n) {
-                         g.distortion_period_m = number_of(n, "distortion_period_m", 1, 4096);
-                     }},
-                    {"tile_hiding", [&](const toml::node& n) { g.tile_hiding = flag_of(n, "tile_hiding"); }}});
+        read_table(
+            table_of(node, "ground"), "[ground]",
+            {{"distortion_amplitude_m",
+              [&](const toml::node& n) {
+                  g.distortion_amplitude_m = number_of(n, "distortion_amplitude_m", 0, 64);
+              }},
+             {"distortion_period_m",
+              [&](const toml::node& n) {
+                  g.distortion_period_m = number_of(n, "distortion_period_m", 1, 4096);
+              }},
+             {"tile_hiding", [&](const toml::node& n) { g.tile_hiding = flag_of(n, "tile_hiding"); }}});
+    };
+    const auto read_texture = [&](const toml::node& node) {
+        read_table(table_of(node, "texture"), "[texture]",
+                   {{"channels", [&](const toml::node& n) {
+                         const auto* list = n.as_array();
+                         if (!list) refuse(n, "channels must be a list of names");
+                         for (const toml::node& name : *list) s.channels.push_back(channel_of(name));
+                     }}});
     };
     const auto read_layers = [&](const toml::node& node) {
         const auto* layers = node.as_array();
@@ -208,6 +231,7 @@ ProjectSettings settings_of(const toml::table& root) {
                 {"air", read_air},
                 {"roles", read_roles},
                 {"ground", read_ground},
+                {"texture", read_texture},
                 {"layer", read_layers}});
     if (!has_samples) refuse(root, "height_samples is missing in [terrain]");
     if (!has_refine) s.refine = default_refine(s.height_spacing_m);
@@ -245,10 +269,16 @@ std::string text_of(const ProjectSettings& s) {
     out += fmt::format("\n[air]\nhaze_per_km = {}\n", toml_real(s.haze_per_km));
     out += fmt::format("\n[roles]\nscorched = {}\nbroken = {}\n", toml_text(s.roles.scorched),
                        toml_text(s.roles.broken));
+    if (!s.channels.empty()) {
+        std::string names;
+        for (const Channel channel : s.channels)
+            names += (names.empty() ? "" : ", ") + toml_text(kChannelNames[size_t(channel)]);
+        out += fmt::format("\n[texture]\nchannels = [{}]\n", names);
+    }
     out += fmt::format("\n[ground]\ndistortion_amplitude_m = {} # at most index_spacing_m; 0: off\n",
                        toml_real(s.ground.distortion_amplitude_m));
-    out += fmt::format("distortion_period_m = {}\ntile_hiding = {}\n", toml_real(s.ground.distortion_period_m),
-                       s.ground.tile_hiding);
+    out += fmt::format("distortion_period_m = {}\ntile_hiding = {}\n",
+                       toml_real(s.ground.distortion_period_m), s.ground.tile_hiding);
     for (const LayerEntry& layer : s.layers) {
         out += fmt::format("\n[[layer]]\nname = {}\n", toml_text(layer.name));
         if (layer.blend) {
@@ -258,6 +288,9 @@ std::string text_of(const ProjectSettings& s) {
             continue;
         }
         out += fmt::format("file = {}\ntile_m = {}\n", toml_text(layer.file), toml_real(layer.tile_m));
+        for (size_t c = 0; c < kChannelNames.size(); ++c)
+            if (layer.channels[c] != 0)
+                out += fmt::format("{} = {}\n", kChannelNames[c], toml_real(layer.channels[c]));
     }
     return out;
 }

@@ -33,8 +33,13 @@ Status check_layer(const LayerEntry& layer, std::set<std::string>& names) {
     if (climbs)
         return error("layer \"{}\": the file \"{}\" is outside the project; give a path relative to it",
                      layer.name, layer.file);
-    const Status tile = check_number("tile_m", layer.tile_m, 0.01, 10000);
-    if (!tile.ok()) return error("layer \"{}\": {}", layer.name, tile.message());
+    const auto check = [&](const char* key, double value, double low, double high) -> Status {
+        const Status status = check_number(key, value, low, high);
+        return status.ok() ? status : error("layer \"{}\": {}", layer.name, status.message());
+    };
+    LOAM_TRY(check("tile_m", layer.tile_m, 0.01, 10000));
+    for (size_t c = 0; c < kChannelNames.size(); ++c)
+        LOAM_TRY(check(kChannelNames[c], layer.channels[c], 0, 1));
     return {};
 }
 
@@ -101,6 +106,11 @@ Status check_settings(const ProjectSettings& settings) {
     for (const LayerEntry& layer : settings.layers) LOAM_TRY(check_layer(layer, names));
     LOAM_TRY(check_blends(settings.layers));
     LOAM_TRY(check_ground(settings));
+    for (size_t i = 0; i < settings.channels.size(); ++i)
+        for (size_t k = 0; k < i; ++k)
+            if (settings.channels[i] == settings.channels[k])
+                return error("[texture] channels names \"{}\" twice",
+                             kChannelNames[size_t(settings.channels[i])]);
     LOAM_TRY(check_number("azimuth_rad", settings.sun_azimuth_rad, -100, 100));
     LOAM_TRY(check_number("elevation_rad", settings.sun_elevation_rad, -1.5708, 1.5708));
     LOAM_TRY(check_number("haze_per_km", settings.haze_per_km, 0, 100));

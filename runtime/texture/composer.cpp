@@ -105,24 +105,28 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
         composer->encode_[mip] = std::move(*encode);
     }
     if (decals) {
-        constexpr VkColorComponentFlags kRgb =
-            VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT;
-        const auto decal = [&](const char* name, const char* fragment) {
+        constexpr VkColorComponentFlags kRg = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT;
+        constexpr VkColorComponentFlags kRgb = kRg | VK_COLOR_COMPONENT_B_BIT;
+        const size_t targets = size_t(textures.scratch_layers);
+        const auto decal = [&](const char* name, const char* fragment, bool channels) {
+            std::vector<VkColorComponentFlags> masks(targets, kRgb);
+            if (!channels) masks[2] = kRg;
+            if (!channels && targets > 3) masks[3] = 0;
             return gpu::Pipeline::create(
                 device, gpu::GraphicsDesc{.name = name,
                                           .vertex_shader = "texture/decal.vert",
                                           .fragment_shader = fragment,
                                           .bindings = {gpu::storage_buffer(0)},
-                                          .constants = {},
-                                          .color_formats = std::vector(3, VK_FORMAT_R8G8B8A8_UNORM),
-                                          .blends = std::vector(3, gpu::Blend::alpha),
-                                          .write_masks = std::vector(3, kRgb),
+                                          .constants = {{31, textures.placement}},
+                                          .color_formats = std::vector(targets, VK_FORMAT_R8G8B8A8_UNORM),
+                                          .blends = std::vector(targets, gpu::Blend::alpha),
+                                          .write_masks = masks,
                                           .stencil = {}});
         };
-        auto crater = decal("crater decal", "texture/decal_crater.frag");
+        auto crater = decal("crater decal", "texture/decal_crater.frag", true);
         if (!crater.ok()) return crater.error();
         composer->crater_ = std::move(*crater);
-        auto footprint = decal("footprint decal", "texture/decal_footprint.frag");
+        auto footprint = decal("footprint decal", "texture/decal_footprint.frag", false);
         if (!footprint.ok()) return footprint.error();
         composer->footprint_ = std::move(*footprint);
         composer->decals_ = true;
@@ -144,7 +148,8 @@ Result<gpu::Pipeline> Composer::material_pipeline(bool one_layer, bool transitio
                                        {1, layers_.has_metal},
                                        {2, layers_.ground.tile_hiding},
                                        {3, bool(layers_.distortion)},
-                                       {4, transitions}}});
+                                       {4, transitions},
+                                       {31, textures_.placement}}});
 }
 
 Status Composer::take_settings() {
@@ -170,7 +175,8 @@ shared::LayerPlace Composer::layer_place(double origin_x_m, double origin_y_m, d
             0,
             0,
             0,
-            0};
+            0,
+            {}};
 }
 
 // Where the page lies in its index page, and whether the rectangle holds one layer only.
@@ -358,8 +364,9 @@ void Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::sp
     const gpu::UploadSlice slice = ring.upload(bytes);
     std::memcpy(slice.data, list.instances.data(), bytes);
     auto pass = commands.pass("texture decals", {{scratch_, Access::color_target}});
-    const std::array<gpu::ColorTarget, 3> targets{
-        {{scratch_.layer_view(0, 0)}, {scratch_.layer_view(0, 1)}, {scratch_.layer_view(0, 2)}}};
+    std::vector<gpu::ColorTarget> targets;
+    for (uint32_t layer = 0; layer < scratch_.layer_count(); ++layer)
+        targets.push_back({scratch_.layer_view(0, layer)});
     commands.begin_rendering({kScratchWidth, kScratchHeight}, targets);
     commands.set_viewport(0, 0, kScratchWidth, kScratchHeight);
     for (const DecalRun& run : list.runs) {

@@ -22,13 +22,14 @@ struct DecalSource {
 };
 
 DecalSource source_of(const Crater& c) {
-    return {.kind = DecalKind::crater,
-            .x_m = c.x_m,
-            .y_m = c.y_m,
-            .size_m = c.radius_m * 2,
-            .reach_m = c.radius_m * double(kCraterMarkReach),
-            .shape = {float(c.radius_m), float(c.depth_m > 0 ? c.depth_m : c.radius_m * 0.4), 0, 0},
-            .seed = c.seed};
+    return {
+        .kind = DecalKind::crater,
+        .x_m = c.x_m,
+        .y_m = c.y_m,
+        .size_m = c.radius_m * 2,
+        .reach_m = c.radius_m * double(kCraterMarkReach),
+        .shape = {float(c.radius_m), float(c.depth_m > 0 ? c.depth_m : c.radius_m * 0.4), float(c.heat), 0},
+        .seed = c.seed};
 }
 
 DecalSource source_of(const Footprint& f) {

@@ -242,6 +242,10 @@ void LayerSet::fill_place(int layer, shared::LayerPlace& place) const {
     place.first = source.first;
     place.second = source.second;
     place.threshold = source.threshold;
+    place.channels = glm::vec4(0);
+    if (size_t(layer) < entries.size())
+        for (size_t c = 0; c < kChannelNames.size(); ++c)
+            place.channels[int(c)] = float(entries[size_t(layer)].channels[c]);
 }
 
 // A transition's picture is what its threshold makes of its layers' pictures.

@@ -1,28 +1,62 @@
 #include "runtime/texture/page_format.h"
 
-#include "runtime/base/check.h"
+#include <algorithm>
+
 #include "shaders/texture/texture_io.h"
 
 namespace loam {
 
-PageTextures page_textures(PageFormat format) {
-    switch (format) {
-        case PageFormat::bc1x3:
-            return {};
-        case PageFormat::bc3x2:
-            return {.format = format,
-                    .count = 2,
-                    .vk_format = VK_FORMAT_BC3_UNORM_BLOCK,
-                    .layout = kPagePairs,
-                    .unit_bytes = 16};
-        case PageFormat::rgba8:
-            return {.format = format,
-                    .vk_format = VK_FORMAT_R8G8B8A8_UNORM,
-                    .unit_texels = 1,
-                    .unit_bytes = 4,
-                    .first_encoded_mip = 1};
+namespace {
+
+// Places in the order of Channel, whatever the order in the project.
+uint32_t placement_of(std::span<const Channel> channels) {
+    uint32_t placement = 0, place = 0;
+    for (uint32_t c = 0; c < kChannelCount; ++c)
+        if (std::find(channels.begin(), channels.end(), Channel(c)) != channels.end())
+            placement |= ++place << (4 * c);
+    return placement;
+}
+
+size_t room(PageFormat format) {
+    return format == PageFormat::bc3x2 ? 0 : format == PageFormat::bc1x3 ? 1 : kChannelCount;
+}
+
+}  // namespace
+
+static_assert(kChannelNames.size() == kChannelCount);
+
+const char* page_format_name(PageFormat format) {
+    static constexpr const char* kNames[] = {"bc1", "bc1x4", "bc3", "rgba8"};
+    return kNames[size_t(format)];
+}
+
+PageFormat format_with_room(PageFormat preferred, size_t channel_count) {
+    return preferred == PageFormat::bc1x3 && channel_count > room(preferred) ? PageFormat::bc1x4 : preferred;
+}
+
+Result<PageTextures> page_textures(PageFormat format, std::span<const Channel> channels) {
+    if (channels.size() > room(format))
+        return error("pages of the format {} hold {} optional channel{}, this map's [texture] has {}; use {}",
+                     page_format_name(format), room(format), room(format) == 1 ? "" : "s", channels.size(),
+                     channels.size() > 1 ? "bc1x4 or rgba8" : "bc1, bc1x4 or rgba8");
+    const bool fourth = channels.size() > 1;
+    PageTextures t{.format = format,
+                   .count = fourth ? 4 : 3,
+                   .placement = placement_of(channels),
+                   .scratch_layers = fourth ? 4 : 3};
+    if (format == PageFormat::bc3x2) {
+        t.count = 2;
+        t.vk_format = VK_FORMAT_BC3_UNORM_BLOCK;
+        t.layout = kPagePairs;
+        t.unit_bytes = 16;
     }
-    LOAM_CHECK(false, "a page format without textures");
+    if (!is_compressed(format)) {
+        t.vk_format = VK_FORMAT_R8G8B8A8_UNORM;
+        t.unit_texels = 1;
+        t.unit_bytes = 4;
+        t.first_encoded_mip = 1;
+    }
+    return t;
 }
 
 bool is_compressed(PageFormat format) {

@@ -3,19 +3,25 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <vulkan/vulkan_core.h>
 
+#include "runtime/base/result.h"
 #include "runtime/gpu/resources.h"
+#include "runtime/store/project.h"
 #include "shaders/texture/page_format.h"
 
 namespace loam {
 
 enum class PageFormat {
-    bc1x3,  // three BC1 textures: 1.5 bytes a texel
-    bc3x2,  // two BC3: 2 bytes a texel, each normal component apart from what it is not like
-    rgba8   // the same channels as bc1x3 uncompressed: the comparison, and fast on software devices
+    bc1x3,  // three BC1 textures: 1.5 bytes a texel, one optional channel
+    bc1x4,  // a fourth for up to four optional channels; three where the map has no more than one
+    bc3x2,  // two BC3: 2 bytes a texel, each normal component apart from what it is not like; no optional
+            // channel
+    rgba8  // the channels of BC1 uncompressed: the comparison, and fast on software devices; as many as there
+           // are
 };
 
 struct PageTextures {
@@ -30,7 +36,11 @@ struct PageTextures {
     int scratch_layers = 3;
 };
 
-[[nodiscard]] PageTextures page_textures(PageFormat format);
+// Refused where the format cannot hold the map's optional channels.
+[[nodiscard]] Result<PageTextures> page_textures(PageFormat format, std::span<const Channel> channels);
+// bc1x4 for bc1x3 where one optional channel is not enough.
+[[nodiscard]] PageFormat format_with_room(PageFormat preferred, size_t channel_count);
+[[nodiscard]] const char* page_format_name(PageFormat format);  // as --format takes it
 [[nodiscard]] bool is_compressed(PageFormat format);
 
 using PageAtlas = std::vector<gpu::Image>;  // PageTextures::count of them

@@ -89,6 +89,8 @@ Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& devi
         return error("the indirection texture's side is a power of two up to {}, not {}", kMaxIndirectionSize,
                      desc.indirection_size);
     if (is_compressed(desc.format) && !device.caps().bc) desc.format = PageFormat::rgba8;
+    auto textures = page_textures(desc.format, document.settings().channels);
+    if (!textures.ok()) return textures.error();
     const TextureLayout layout = texture_layout(document.bounds());
     const int log2_size = std::countr_zero(uint32_t(desc.indirection_size));
     if (log2_size < layout.default_log2_width)
@@ -99,7 +101,7 @@ Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& devi
         std::min({desc.max_live_sectors, 255, desc.pages_per_side * desc.pages_per_side / kRootDivisor});
     std::unique_ptr<VirtualTexture> texture(new VirtualTexture);
     texture->impl_ = std::make_unique<Impl>(
-        device, document, index, layers, desc, layout,
+        device, document, index, layers, desc, *textures, layout,
         SectorSetDesc{
             .layout = layout, .indirection_log2_size = log2_size, .max_live = desc.max_live_sectors});
     LOAM_TRY(texture->impl_->make_resources());

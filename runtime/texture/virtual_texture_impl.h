@@ -41,13 +41,13 @@ struct VirtualTexture::Impl {
     };
 
     Impl(gpu::Device& d, const Document& doc, IndexMap& i, LayerSet& l, const VirtualTextureDesc& s,
-         const TextureLayout& t, const SectorSetDesc& sector_desc)
+         const PageTextures& p, const TextureLayout& t, const SectorSetDesc& sector_desc)
         : device(d),
           document(doc),
           index(i),
           layers(l),
           desc(s),
-          textures(page_textures(s.format)),
+          textures(p),
           layout(t),
           pool(s.pages_per_side, s.pool_rules),
           sectors(sector_desc),

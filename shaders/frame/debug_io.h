@@ -23,6 +23,7 @@ LOAM_BEGIN_SHARED
 #define kDebugHeights 15u
 #define kDebugAtlas 16u
 #define kDebugIndirectionMap 17u
+#define kDebugThermal 18u
 
 #define kDebugFactsSlot 20   // VtPlaceFacts, one a place
 #define kDebugSquaresSlot 21 // VtImageSquare, ended by one without a size

@@ -29,6 +29,15 @@ vec3 facts_color(uint view, VtPlaceFacts f) {
     return f.decals == 0u ? kDebugUnwanted : debug_ramp_color(debug_log_share(float(f.decals), kDebugMostDecals));
 }
 
+// Cold to hot: blue-black, violet, red, yellow, white.
+vec3 heat_color(float heat) {
+    const vec3 kColors[6] = vec3[6](vec3(0.02, 0.02, 0.1), vec3(0.25, 0.03, 0.45), vec3(0.75, 0.1, 0.35), vec3(0.95, 0.45, 0.1),
+                                    vec3(1.0, 0.85, 0.25), vec3(1.0, 1.0, 0.95));
+    float at = clamp(heat, 0.0, 1.0) * 5.0;
+    int low = min(int(at), 4);
+    return mix(kColors[low], kColors[low + 1], at - float(low));
+}
+
 vec3 debug_color(Pixel p, Surface s, VtSample t, vec3 lit) {
     float light = 0.35 + 0.65 * dot(lit, vec3(0.3, 0.6, 0.1));
     float edge = max(abs(t.page_uv.x - 0.5), abs(t.page_uv.y - 0.5)) > 0.485 ? 0.5 : 1.0;
@@ -48,6 +57,8 @@ vec3 debug_color(Pixel p, Surface s, VtSample t, vec3 lit) {
         case kDebugDirt:
         case kDebugCost:
         case kDebugDecals: return facts_color(push.debug_view, facts_of(t.word)) * light * edge;
+        // Shapes show faintly: what the sun warms is a little warmer than what it does not.
+        case kDebugThermal: return heat_color(0.12 * dot(lit, vec3(0.3, 0.6, 0.1)) + 0.88 * t.material.channels.y);
     }
     return lit;
 }

@@ -4,6 +4,7 @@
 #define LOAM_RESOLVE_COMMON_GLSL
 #include "shaders/frame/frame_io.h"
 #include "shaders/frame/resolve_io.h"
+#include "shaders/frame/channels.glsl"
 #include "shaders/frame/lighting.glsl"
 #include "shaders/geometry/pixel_ellipse_math.h"
 
@@ -52,6 +53,17 @@ vec3 bent_normal(vec3 ground, vec2 detail) {
 vec3 lit_pixel(Pixel p, Surface s) {
     float visibility = sun_visibility(u, shadow_atlas, p.rel_m, p.ground, kFine);
     vec3 color = shade(u, s, -normalize(p.rel_m), visibility, p.sky_open);
+    return to_screen(u, apply_haze(u, color, p.rel_m));
+}
+
+// With what the map's optional channels add. The place is the pixel's: sector of the world and metres in it.
+vec3 lit_pixel(Pixel p, Surface s, vec4 channels, ivec2 sector, vec2 offset_m) {
+    if (!kHasChannels) return lit_pixel(p, s);
+    float visibility = sun_visibility(u, shadow_atlas, p.rel_m, p.ground, kFine);
+    vec3 to_eye = -normalize(p.rel_m);
+    vec3 color = shade(u, s, to_eye, visibility, p.sky_open);
+    GroundPlace at = GroundPlace(sector, offset_m, exp2(p.log2_long), exp2(p.log2_short));
+    color += channel_light(u, s, channels, at, to_eye, visibility);
     return to_screen(u, apply_haze(u, color, p.rel_m));
 }
 

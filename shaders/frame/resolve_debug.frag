@@ -15,5 +15,5 @@ void main() {
     VtSample t = vt_sample(sector, offset_m, p.log2_long, p.log2_short, p.axis);
     VtMaterial m = t.material;
     Surface s = Surface(m.albedo, bent_normal(p.ground, m.normal), m.gloss, m.occlusion, m.metalness);
-    out_color = vec4(debug_color(p, s, t, lit_pixel(p, s)), 1.0);
+    out_color = vec4(debug_color(p, s, t, lit_pixel(p, s, m.channels, vt.camera_sector + sector, offset_m)), 1.0);
 }

@@ -18,6 +18,7 @@ struct LayerPlace {
     uint first;      // the layer itself; of a transition: from
     uint second;     // the layer itself; of a transition: to
     float threshold; // of a transition
+    vec4 channels;   // amounts of scattering, thermal, emissive, glint; of a transition: those of its layers count
 };
 
 // A rectangle of a page to be composed and encoded.

@@ -9,6 +9,7 @@ layout(location = 0) flat in uint decal_index;
 layout(location = 0) out vec4 albedo;
 layout(location = 1) out vec4 surface;
 layout(location = 2) out vec4 metal;
+layout(location = 3) out vec4 channels; // where scratch has the layer
 
 void main() {
     DecalInstance decal = decals[decal_index];
@@ -17,5 +18,7 @@ void main() {
     DecalShade shade = crater_shade(decal, offset_m);
     albedo = shade.albedo;
     surface = shade.surface;
-    metal = shade.metal;
+    vec4 places = channel_places(shade.channels);
+    metal = vec4(shade.metal.rg, places.x, shade.metal.a);
+    channels = vec4(places.yzw, shade.metal.a);
 }

@@ -12,7 +12,7 @@ struct DecalInstance {
     vec2 center_texel;  // of the decal, in page texels (border included, texel i's centre is at i + 0.5)
     float texel_m;      // of the page
     float fade;         // 1, less where the decal is smaller than a texel of this level
-    vec4 shape;         // crater: radius m, depth m, 0, 0; footprint: length m, depth m, sin heading, cos heading
+    vec4 shape;         // crater: radius m, depth m, heat, 0; footprint: length m, depth m, sin heading, cos heading
     uint seed;
     uint foot;          // footprint: 0 left, 1 right
 };

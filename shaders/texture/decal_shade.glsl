@@ -5,16 +5,34 @@
 #include "shaders/document/crater_math.h"
 #include "shaders/document/footprint_math.h"
 #include "shaders/texture/decal_io.h"
+#include "shaders/texture/page_channels.glsl"
 #include "shaders/texture/texture_io.h"
 
 struct DecalShade {
     vec4 albedo;  // square roots of linear values, weight
     vec4 surface; // gloss, normal x, occlusion; weight
-    vec4 metal;   // metalness, normal y, feature; weight
+    vec4 metal;   // metalness, normal y, not used; weight
+    vec4 channels; // optional: scattering, thermal, emissive, glint
+    float channel_weight; // metal's, or 0 where the channels stay as they are
 };
 
 const vec3 kBurntRoot = vec3(0.17, 0.155, 0.14); // soot: about 2.5 % linear
 const vec3 kDustRoot = vec3(0.60, 0.565, 0.51);  // pulverised rock: about a third
+
+// Soot neither scatters nor sparkles. A hot floor is warm all over, hottest in the middle, and its embers are veins where noise
+// crosses zero, which become a glow where they are finer than two texels.
+vec4 crater_channels(DecalInstance decal, vec2 offset_m, float scorch) {
+    float heat = decal.shape.z;
+    float vein_m = max(decal.shape.x * (1.0 / 9.0), 0.05);
+    float detail = clamp(vein_m / decal.texel_m * 0.25 - 1.0, 0.0, 1.0);
+    vec2 p = offset_m / vein_m;
+    precise float wide = noise_value(p, decal.seed + 61u);
+    precise float narrow = noise_value(p * 2.7, decal.seed + 62u);
+    float vein = 1.0 - clamp(abs(wide + 0.45 * narrow) * 3.5, 0.0, 1.0);
+    precise float hot = scorch * scorch * heat;
+    precise float ember = clamp(hot * mix(0.22, vein * (0.65 + 0.5 * narrow), detail), 0.0, 1.0);
+    return vec4(0.0, clamp(max(hot * 0.75, ember), 0.0, 1.0), ember, 0.0);
+}
 
 // offset_m: from the crater's centre.
 DecalShade crater_shade(DecalInstance decal, vec2 offset_m) {
@@ -36,6 +54,8 @@ DecalShade crater_shade(DecalInstance decal, vec2 offset_m) {
     shade.albedo = vec4(mix(kDustRoot, kBurntRoot, clamp(scorch * 1.2, 0.0, 1.0)) * (1.0 + 0.12 * h * detail), cover);
     shade.surface = vec4(0.12, page_encode_normal(normal.x), 1.0 - 0.25 * detail * max(-h, 0.0), cover);
     shade.metal = vec4(0.0, page_encode_normal(normal.y), 0.0, cover);
+    shade.channels = kHasChannels ? crater_channels(decal, offset_m, scorch) : vec4(0);
+    shade.channel_weight = cover;
     return shade;
 }
 
@@ -64,6 +84,8 @@ DecalShade print_shade(DecalInstance decal, vec2 offset_m) {
     shade.albedo = vec4(vec3(0.2, 0.18, 0.16), 0.5 * pressed * inside);
     shade.surface = vec4(0.1, page_encode_normal(normal.x), 1.0 - 0.35 * pressed, 0.9 * around);
     shade.metal = vec4(0.0, page_encode_normal(normal.y), 0.0, 0.9 * around);
+    shade.channels = vec4(0);
+    shade.channel_weight = 0.0; // pressed snow scatters as loose snow does
     return shade;
 }
 #endif

@@ -14,7 +14,7 @@
 // | +7 | layers' metalness | LayerSet::metalness, LayerSet::sampler |
 // | +9 | distortion map, sampler2DArray | LayerSet::distortion_map(), LayerSet::sampler |
 // Specialisation constants: 21 where a layer has metal (LayerSet::has_metal), 40 tile hiding, 41 distortion,
-// 42 transitions.
+// 42 transitions, 31 the optional channels (page_channels.glsl).
 //
 //     MaterialSample m = direct_material(rel.xy, log2_footprint); // camera-relative metres; log2 of metres a sample
 #ifndef LOAM_TEXTURE_DIRECT_GLSL

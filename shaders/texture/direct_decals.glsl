@@ -47,6 +47,7 @@ MaterialSample with_decals(MaterialSample m, vec2 rel_m, float log2_footprint) {
         root = mix(root, shade.albedo.rgb, shade.albedo.a * shown);
         surface = mix(surface, shade.surface.rgb, shade.surface.a * shown);
         metal = mix(metal, shade.metal.rg, shade.metal.a * shown);
+        if (kHasChannels) m.channels = mix(m.channels, shade.channels, shade.channel_weight * shown);
     }
     m.albedo = root * root;
     m.gloss = surface.x;

@@ -16,6 +16,7 @@ MaterialSample direct_texels(vec2 rel_m, float log2_footprint) {
     vec2 corner_m = mod(vec2(direct.camera_sector), exp2(max(mip, 0.0))) * 64.0 + direct.camera_offset_m;
     vec3 root = vec3(0), surface = vec3(0);
     vec2 metal = vec2(0);
+    vec4 channels = vec4(0);
     for (int i = 0; i < 8; ++i) {
         bool second = i >= 4;
         float side_m = second ? 2.0 * texel_m : texel_m;
@@ -34,6 +35,7 @@ MaterialSample direct_texels(vec2 rel_m, float log2_footprint) {
             albedo += clamp(m.albedo, 0.0, 1.0) * part; // a mip of roots averages the squares
             surface += vec3(m.gloss, page_encode_normal(m.normal.x), m.occlusion) * (part * weight);
             metal += vec2(m.metalness, page_encode_normal(m.normal.y)) * (part * weight);
+            channels += m.channels * (part * weight);
         }
         root += sqrt(albedo) * weight;
     }
@@ -42,6 +44,7 @@ MaterialSample direct_texels(vec2 rel_m, float log2_footprint) {
     m.gloss = surface.x;
     m.occlusion = surface.z;
     m.metalness = metal.x;
+    m.channels = channels;
     m.normal = vec2(page_decode_normal(surface.y), page_decode_normal(metal.y));
     return m;
 }

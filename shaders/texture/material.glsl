@@ -11,6 +11,7 @@
 #define LOAM_TEXTURE_MATERIAL_GLSL
 #include "shaders/texture/compose_io.h"
 #include "shaders/texture/ompv.h"
+#include "shaders/texture/page_channels.glsl"
 #include "shaders/texture/tile_hiding.h"
 
 // Cosine and sine of sixteenths of a circle.
@@ -25,7 +26,16 @@ struct MaterialSample {
     float gloss;
     float occlusion;
     float metalness;
+    vec4 channels; // optional: scattering, thermal, emissive, glint
 };
+
+// A layer's amounts at a texel: bright ground scatters, cracks (low reveal) glow, crystals on top (high reveal) sparkle; heat lies
+// evenly. `albedo` is linear and tinted.
+vec4 texel_channels(vec4 amounts, vec3 albedo, float reveal) {
+    precise float bright = sqrt(clamp(dot(albedo, vec3(0.25, 0.6, 0.15)), 0.0, 1.0));
+    precise vec4 channels = amounts * vec4(bright, 1.0, 1.0 - reveal, reveal);
+    return channels;
+}
 
 // The four index vertices around a place, and where it is.
 struct MaterialCorners {
@@ -49,6 +59,7 @@ struct LayerSample {
     vec4 albedo_reveal;
     vec4 surface; // normal x, normal y, gloss, occlusion as stored
     float metalness;
+    vec4 channels; // amounts
 };
 
 // One layer's textures; key: the corner's, which says how they are turned.
@@ -65,7 +76,7 @@ LayerSample sample_textures(MaterialCorners c, uint key, LayerPlace place) {
     }
     vec3 uv = vec3(at, float(place.slot));
     float lod = max(floor(place.lod_bias + c.log2_texel + 0.5), 0.0);
-    LayerSample s = LayerSample(textureLod(MATERIAL_ALBEDO, uv, lod), textureLod(MATERIAL_NORMAL, uv, lod), 0.0);
+    LayerSample s = LayerSample(textureLod(MATERIAL_ALBEDO, uv, lod), textureLod(MATERIAL_NORMAL, uv, lod), 0.0, place.channels);
     if (kHasMetal) s.metalness = textureLod(MATERIAL_METAL, uv, lod).r;
     if (kTileHiding) { // what is turned one way to be looked up is seen turned the other way
         precise vec2 n = s.surface.xy - 128.0 / 255.0;
@@ -79,7 +90,7 @@ LayerSample sample_textures(MaterialCorners c, uint key, LayerPlace place) {
 LayerSample sample_layer(MaterialCorners c, uint key, uint layer) {
     LayerPlace place = MATERIAL_PLACE(layer);
     if (!kTransitions) return sample_textures(c, key, place);
-    LayerSample shown = LayerSample(vec4(0), vec4(0), 0.0);
+    LayerSample shown = LayerSample(vec4(0), vec4(0), 0.0, vec4(0));
     float cover = 1.0;
     uint source = place.first;
     // A loop for the reason that evaluate_material has one: neighbours without a transition end it after one pass.
@@ -89,7 +100,8 @@ LayerSample sample_layer(MaterialCorners c, uint key, uint layer) {
         precise vec4 albedo_reveal = shown.albedo_reveal * (1.0 - cover) + s.albedo_reveal * cover;
         precise vec4 surface = shown.surface * (1.0 - cover) + s.surface * cover;
         precise float metalness = shown.metalness * (1.0 - cover) + s.metalness * cover;
-        shown = LayerSample(albedo_reveal, surface, metalness);
+        precise vec4 channels = shown.channels * (1.0 - cover) + s.channels * cover;
+        shown = LayerSample(albedo_reveal, surface, metalness, channels);
         if (place.second == source) break;
         source = place.second;
     }
@@ -108,6 +120,7 @@ MaterialSample evaluate_material(MaterialCorners c) {
     vec3 albedo = vec3(0);
     vec4 surface = vec4(0); // normal x, normal y, gloss, occlusion as stored
     float metalness = 0.0;
+    vec4 channels = vec4(0);
     uint from = 0u;
     // A loop, not four branches: it ends once eight lanes are done, which branches do not on software devices.
     for (int visit = 0; visit < (kOneLayer ? 1 : 4); ++visit) {
@@ -127,12 +140,19 @@ MaterialSample evaluate_material(MaterialCorners c) {
             precise float next_metal = metalness * (1.0 - cover) + from_layer.metalness * cover;
             metalness = next_metal;
         }
+        if (kHasChannels) {
+            precise vec4 here =
+                texel_channels(from_layer.channels, from_layer.albedo_reveal.rgb * tint, from_layer.albedo_reveal.a);
+            precise vec4 next_channels = channels * (1.0 - cover) + here * cover;
+            channels = next_channels;
+        }
     }
     material.albedo = albedo;
     material.normal = surface.xy * (255.0 / 127.0) - 128.0 / 127.0; // 128 is a flat normal's byte
     material.gloss = surface.z;
     material.occlusion = surface.w;
     material.metalness = metalness;
+    material.channels = channels;
     return material;
 }
 #endif

@@ -80,7 +80,7 @@ def test_converge(plain):
 def test_quality(plain):
     (_, levels), (_, causes) = bench("quality", plain, "--size", "192x108")
     assert {row["level"] for row in levels} == {"high"}
-    uncompressed = next(row for row in levels if row["pages"] == "3xRGBA8")
+    uncompressed = next(row for row in levels if row["pages"] == "uncompressed")
     for row in levels:
         assert row["settled"]
         assert 15 < row["PSNR dB"] < 99

@@ -35,12 +35,23 @@ TEST(command, the_examples_of_the_header_parse) {
          R"({"cmd":"paint","dabs":[[1,2]],"radius_m":5,"layer":"rock","strength":1,"hardness":0.5,"seed":1,
                  "min_slope_rad":0,"max_slope_rad":1.5708,"tint":[0.5,1,0]})",
          R"({"cmd":"crater","x":1,"y":2,"radius_m":10,"depth_m":4,"seed":7})",
+         R"({"cmd":"crater","x":1,"y":2,"radius_m":10,"heat":0.8})",
          R"({"cmd":"footprints","prints":[{"x":1,"y":2,"heading_rad":0.1,"foot":0}],"length_m":0.3,"depth_m":0.03,"seed":1})",
          R"({"cmd":"operator","id":12,"enabled":false})", R"({"cmd":"remove","id":12,"group":3})",
          R"({"cmd":"undo"})"}) {
         const auto command = parse_command(json);
         EXPECT_TRUE(command.ok()) << json << ": " << (command.ok() ? "" : command.message());
     }
+}
+
+TEST(command, a_hot_crater_comes_back_and_a_cold_one_reads_as_before) {
+    const auto hot = parse_command(R"({"cmd":"crater","x":1,"y":2,"heat":0.8})");
+    ASSERT_TRUE(hot.ok());
+    EXPECT_EQ(std::get<CraterCommand>(hot->body).crater.heat, 0.8);
+    const auto again = parse_command(to_json(*hot));
+    ASSERT_TRUE(again.ok());
+    EXPECT_EQ(std::get<CraterCommand>(again->body).crater.heat, 0.8);
+    EXPECT_EQ(to_json({CraterCommand{{.x_m = 1}}}).find("heat"), std::string::npos);
 }
 
 TEST(command, errors_are_one_sentence) {
@@ -81,6 +92,8 @@ TEST(command, errors_are_one_sentence) {
          "paint: \"seed\" must be a whole number, found 1.5"},
         {R"({"cmd":"crater","x":1})", "crater: \"y\" is missing"},
         {R"({"cmd":"crater","x":1,"y":1,"radius_m":5000})", "radius_m is 5000, must be 0.1 … 2000"},
+        {R"({"cmd":"crater","x":1,"y":1,"heat":1.5})", "heat is 1.5, must be 0 … 1"},
+        {R"({"cmd":"crater","x":1,"y":1,"heat":"hot"})", "crater: \"heat\" must be a number, found string"},
         {R"({"cmd":"footprints","prints":[{"x":1,"y":1,"toes":5}]})",
          "footprints: print 0: unknown key \"toes\""},
         {R"({"cmd":"footprints","prints":[{"x":1,"y":1,"foot":2}]})",

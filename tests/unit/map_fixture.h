@@ -26,6 +26,7 @@ struct MapFixtureDesc {
     int layers = 3;  // beyond grass, dirt and scree: "layer 3" and so on
     GroundSettings ground;
     std::vector<LayerEntry> transitions;  // after the layers
+    std::vector<Channel> channels;  // with any, the layers have amounts of all of them
 };
 
 class MapFixture {
@@ -49,6 +50,12 @@ class MapFixture {
         }
         settings.layers.insert(settings.layers.end(), desc.transitions.begin(), desc.transitions.end());
         settings.ground = desc.ground;
+        settings.channels = desc.channels;
+        if (!desc.channels.empty()) {
+            settings.layers[0].channels = {0.6, 0.2, 0.3, 0.5};
+            settings.layers[1].channels = {0.1, 0.5, 0.8, 0.2};
+            settings.layers[2].channels = {0.9, 0.3, 0.1, 0.9};
+        }
         auto created = Document::create(folder_, settings);
         if (!created) {
             ADD_FAILURE() << created.message();

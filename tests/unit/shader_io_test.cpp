@@ -95,6 +95,16 @@ TEST(ShaderIo, TileDraw) {
                   {AT(TileDraw, vertex_count), AT(TileDraw, instance_count), AT(TileDraw, first_vertex), AT(TileDraw, first_instance)});
 }
 
+TEST(ShaderIo, LayerPlace) {
+    expect_layout("LayerPlace", sizeof(shared::LayerPlace),
+                  {AT(LayerPlace, offset), AT(LayerPlace, scale), AT(LayerPlace, lod_bias), AT(LayerPlace, slot),
+                   AT(LayerPlace, first), AT(LayerPlace, second), AT(LayerPlace, threshold), AT(LayerPlace, channels)});
+}
+
+TEST(ShaderIo, EncodePush) {
+    expect_layout("EncodePush", sizeof(shared::EncodePush), {AT(EncodePush, tile_count), AT(EncodePush, weights)});
+}
+
 TEST(ShaderIo, VtParams) {
     expect_layout("VtParams", sizeof(shared::VtParams),
                   {AT(VtParams, camera_sector), AT(VtParams, camera_offset_m), AT(VtParams, table_origin),

@@ -201,6 +201,8 @@ TEST(project, comes_back_as_it_was) {
     s.layers[1].tile_m = 1.0 / 3;
     s.layers.push_back({.name = "t", .file = "", .blend = LayerEntry::Blend{s.layers[0].name, s.layers[1].name, 1.0 / 3, true}});
     s.ground = {.distortion_amplitude_m = 0.2, .distortion_period_m = 12.5, .tile_hiding = true};
+    s.layers[1].channels = {0, 0.25, 0, 1.0 / 3};
+    s.channels = {Channel::glint, Channel::scattering};
     ASSERT_TRUE(save_project(folder.path(), s).ok());
     const auto t = take(load_project(folder.path()));
     EXPECT_EQ(t.name, s.name);
@@ -213,6 +215,9 @@ TEST(project, comes_back_as_it_was) {
     ASSERT_EQ(t.layers.size(), 4u);
     EXPECT_EQ(t.layers, s.layers);
     EXPECT_EQ(t.layers[1].tile_m, 1.0 / 3);
+    EXPECT_EQ(t.layers[1].channels, s.layers[1].channels);
+    EXPECT_EQ(t.layers[0].channels, LayerEntry().channels);
+    EXPECT_EQ(t.channels, s.channels);
     EXPECT_EQ(t.height_samples_y, 207);
     EXPECT_EQ(t.ground, s.ground);
 }
@@ -240,6 +245,13 @@ TEST(project, errors_are_sentences_with_the_line) {
         {good + "[ground]\ndistortion_amplitude_m = 1.5\n", "must be 0 … 1 (index_spacing_m)"},
         {good + "[ground]\ndistortion_amplitude_m = nan\n", ":5: distortion_amplitude_m is nan"},
         {good + "[ground]\ndistortion_period_m = 0\n", ":5: distortion_period_m is 0"},
+        {good + "[texture]\nchannels = [\"glow\"]\n",
+         ":5: unknown channel \"glow\" in [texture] (known: scattering, thermal, emissive, glint)"},
+        {good + "[texture]\nchannels = \"glint\"\n", ":5: channels must be a list of names"},
+        {good + "[texture]\nchannels = [3]\n", ":5: a channel must be a text in quotes"},
+        {good + "[texture]\nchannels = [\"glint\", \"thermal\", \"glint\"]\n",
+         "[texture] channels names \"glint\" twice"},
+        {good + "[[layer]]\nname = \"a\"\nfile = \"a\"\nglint = 2\n", ":7: glint is 2, must be 0 … 1"},
         {good + "refine = \n", ":4: "},
         {"name = \"x\"\n", "height_samples is missing"},
         {"[terrain]\nheight_samples = 7\n", ":2: height_samples must be [east, north]"},
