@@ -9,6 +9,8 @@
 #include "editor/settings.h"
 #include "editor/settings_text.h"
 #include "editor/transitions.h"
+#include "runtime/document/operator_json.h"
+#include "runtime/document/spline_path.h"
 
 namespace loam::python {
 
@@ -149,24 +151,47 @@ py::object history(Project& p, int newest) {
 py::object operators(Project& p) {
     Json out = Json::array();
     for (const Operator& op : p.session().document().operators()) {
-        Json row = {{"id", op.id}, {"order", op.order}, {"enabled", op.enabled}};
-        if (const Crater* c = std::get_if<Crater>(&op.shape))
-            row.update(Json{{"kind", "crater"},
-                            {"x", c->x_m},
-                            {"y", c->y_m},
-                            {"radius_m", c->radius_m},
-                            {"depth_m", c->depth_m},
-                            {"seed", c->seed},
-                            {"heat", c->heat}});
-        if (const Footprint* f = std::get_if<Footprint>(&op.shape))
-            row.update(Json{{"kind", "footprint"},
-                            {"x", f->x_m},
-                            {"y", f->y_m},
-                            {"heading_rad", f->heading_rad},
-                            {"foot", f->foot}});
-        out.push_back(row);
+        Json row = Json::parse(operator_json(op));
+        row["id"] = op.id;
+        out.push_back(std::move(row));
     }
     return to_python(out);
+}
+
+// A command of keyword arguments.
+py::object apply_keywords(Project& p, const char* name, const py::kwargs& keywords) {
+    py::dict command(keywords);
+    command["cmd"] = name;
+    return p.apply(command);
+}
+
+py::object edit_operator(Project& p, uint64_t id, const py::kwargs& changes) {
+    for (const Operator& op : p.session().document().operators()) {
+        if (op.id != id) continue;
+        py::dict command(to_python(Json::parse(operator_json(op))));
+        for (const char* key : {"order", "enabled"}) command.attr("pop")(key);
+        command.attr("update")(changes);
+        command["cmd"] = "edit";
+        command["id"] = id;
+        return p.apply(command);
+    }
+    throw PythonError(fmt::format("there is no operator {}", id));
+}
+
+// Control points of a smooth curve through places, with the ground's height where a place has none.
+std::vector<std::array<double, 4>> spline_through(Project& p, const std::vector<std::vector<double>>& places,
+                                                  double width_m) {
+    std::vector<SplinePoint> through;
+    for (const std::vector<double>& at : places) {
+        if (at.size() < 2 || at.size() > 4)
+            throw PythonError("a place is (x, y), (x, y, z) or (x, y, z, width)");
+        through.push_back({at[0], at[1], at.size() > 2 ? at[2] : unwrap(p.session().height_m(at[0], at[1])),
+                           at.size() > 3 ? at[3] : width_m});
+    }
+    std::vector<std::array<double, 4>> points;
+    for (const SplinePoint& point : bezier_through(through))
+        points.push_back({point.x_m, point.y_m, point.z_m, point.width_m});
+    return points;
 }
 
 uint32_t count_stale_pages(Project& p) {
@@ -251,6 +276,55 @@ void bind_edits(py::class_<Project>& c) {
         },
         "Footprints at (x, y, heading_rad), left and right in turn.", py::arg("prints"),
         py::arg("length_m") = 0.3, py::arg("depth_m") = 0.03, py::arg("seed") = 0);
+    c.def(
+        "decal",
+        [](Project& p, double x, double y, const py::kwargs& keywords) {
+            keywords["x"] = x;
+            keywords["y"] = y;
+            return apply_keywords(p, "decal", keywords);
+        },
+        "A terrain decal at (x, y): half_m, heading_rad, outline, layer, colour, opacity, edge and so on.",
+        py::arg("x"), py::arg("y"));
+    c.def(
+        "spline",
+        [](Project& p, const py::object& points, const py::kwargs& keywords) {
+            keywords["points"] = points;
+            return apply_keywords(p, "spline", keywords);
+        },
+        "A splined decal of Bezier control points (x, y, z, width): carve, shoulder_m, fade_m, layer and so "
+        "on.",
+        py::arg("points"));
+    c.def("spline_through", &spline_through,
+          "Control points of a smooth curve through (x, y), (x, y, z) or (x, y, z, width); without a z: the "
+          "ground's.",
+          py::arg("places"), py::arg("width_m") = 4.0);
+    c.def(
+        "volume",
+        [](Project& p, const std::array<double, 3>& at, const py::kwargs& keywords) {
+            keywords["at"] = at;
+            return apply_keywords(p, "volume", keywords);
+        },
+        "A volume decal at (x, y, z): half_m, direction, roll_rad, outline, layer and so on.", py::arg("at"));
+    c.def("edit_operator", &edit_operator, "Changes parameters of an operator; the rest stay.",
+          py::arg("id"));
+    c.def(
+        "reorder_operator",
+        [](Project& p, uint64_t id, uint64_t order) {
+            return p.apply_json({{"cmd", "reorder"}, {"id", id}, {"order", order}});
+        },
+        "Operators of a kind are drawn in ascending order, then id.", py::arg("id"), py::arg("order"));
+    c.def(
+        "show_operator",
+        [](Project& p, uint64_t id, bool shown) {
+            return p.apply_json({{"cmd", "operator"}, {"id", id}, {"enabled", shown}});
+        },
+        "Switches an operator on or off.", py::arg("id"), py::arg("shown") = true);
+    c.def(
+        "remove_operator",
+        [](Project& p, uint64_t id) {
+            return p.apply_json({{"cmd", "remove"}, {"id", id}});
+        },
+        py::arg("id"));
     c.def(
         "undo",
         [](Project& p) {

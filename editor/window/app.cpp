@@ -12,6 +12,12 @@ namespace {
 constexpr int kHistoryLength = 400; // commands looked at
 constexpr int kMostSteps = 60;      // shown
 
+std::string_view kind_title(const OperatorShape& shape) {
+    constexpr std::string_view names[] = {"Crater", "Footprint", "Decal", "Road", "Volume decal"};
+    static_assert(std::size(names) == std::variant_size_v<OperatorShape>);
+    return names[shape.index()];
+}
+
 struct Titles {
     std::string operator()(const SculptCommand& c) const {
         constexpr std::string_view names[] = {"Raise", "Lower", "Smooth", "Flatten"};
@@ -22,6 +28,9 @@ struct Titles {
     }
     std::string operator()(const CraterCommand& c) const { return fmt::format("Crater {:.1f} m", c.crater.radius_m); }
     std::string operator()(const FootprintsCommand&) const { return "Footprints"; }
+    std::string operator()(const AddOperatorCommand& c) const { return std::string(kind_title(c.shape)); }
+    std::string operator()(const EditOperatorCommand& c) const { return fmt::format("Edit {}", kind_title(c.shape)); }
+    std::string operator()(const ReorderCommand&) const { return "Reorder event"; }
     std::string operator()(const SetOperatorCommand& c) const { return c.enabled ? "Show event" : "Hide event"; }
     std::string operator()(const RemoveOperatorCommand&) const { return "Remove event"; }
     std::string operator()(const UndoCommand&) const { return "Undo"; }

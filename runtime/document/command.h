@@ -10,10 +10,25 @@
 //   {"cmd":"crater","x":…,"y":…,"radius_m":10,"depth_m":4,"seed":7,"heat":0.8}
 //   {"cmd":"footprints","prints":[{"x":…,"y":…,"heading_rad":…,"foot":0},…],"length_m":0.3,"depth_m":0.03,"seed":1}
 //       a print may have its own length_m, depth_m and seed; else print i has seed + i
+//   {"cmd":"decal","x":…,"y":…,"half_m":[4,2],"heading_rad":0,"outline":"rectangle", MATERIAL}
+//   {"cmd":"spline","points":[[x,y,z,width],…],"fade_m":0,"carve":0,"shoulder_m":3, MATERIAL}
+//       control points of cubic Bezier pieces: 4, 7, 10, …; without a width they take "width_m", and a carve
+//       needs every z
+//   {"cmd":"volume","at":[x,y,z],"half_m":[4,2,3],"direction":[0,0,-1],"roll_rad":0,"outline":"ellipse",
+//   MATERIAL}
+//       MATERIAL:
+//       "layer":"rock","colour":[1,1,1],"gloss":0.2,"metalness":0,"tile_m":0,"opacity":1,"edge":0.2,
+//       "rough":0,"seed":0,"channels":{"albedo":1,"normal":1,"gloss":1,"metalness":1,"occlusion":1}
+//       (ground_decal.h says what they mean); all of it may be left out
+//   {"cmd":"edit","id":12,"kind":"decal", …}   replaces all parameters; kinds: crater, footprint, decal,
+//       spline, volume
+//   {"cmd":"reorder","id":12,"order":3}   evaluated in ascending order, then id; a new operator's order is
+//   its id
 //   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}
 //   {"cmd":"undo"}    {"cmd":"redo"}
-// Required: mode and dabs; target_m to flatten; layer or tint; x and y; prints; id and enabled. The rest have
-// the defaults below. Any command may carry "group": n. Consecutive commands of one group undo together.
+// Required: mode and dabs; target_m to flatten; layer or tint; x and y; prints; points; at; id, enabled and
+// order. The rest have the defaults below. Any command may carry "group": n. Consecutive commands of one
+// group undo together.
 #pragma once
 
 #include <optional>
@@ -59,6 +74,16 @@ struct CraterCommand {
 struct FootprintsCommand {
     std::vector<Footprint> prints;
 };
+struct AddOperatorCommand {  // decal, spline, volume
+    OperatorShape shape;
+};
+struct EditOperatorCommand {
+    uint64_t id = 0;
+    OperatorShape shape;
+};
+struct ReorderCommand {
+    uint64_t id = 0, order = 0;
+};
 struct SetOperatorCommand {
     uint64_t id = 0;
     bool enabled = true;
@@ -70,7 +95,8 @@ struct UndoCommand {};
 struct RedoCommand {};
 
 using CommandBody = std::variant<SculptCommand, PaintCommand, CraterCommand, FootprintsCommand,
-                                 SetOperatorCommand, RemoveOperatorCommand, UndoCommand, RedoCommand>;
+                                 AddOperatorCommand, EditOperatorCommand, ReorderCommand, SetOperatorCommand,
+                                 RemoveOperatorCommand, UndoCommand, RedoCommand>;
 
 struct Command {
     CommandBody body;
@@ -84,6 +110,7 @@ struct Command {
 [[nodiscard]] std::string to_json(const Command& command);
 // The ranges of all numbers; `apply` and parse_command refuse what does not pass.
 [[nodiscard]] Status check_command(const Command& command);
+[[nodiscard]] Status check_shape(const OperatorShape& shape);
 
 // Brush falloff, 1 at the centre to 0 at the rim; `t` = distance / radius. Smooth (C1) for any hardness.
 [[nodiscard]] double brush_falloff(double t, double hardness);

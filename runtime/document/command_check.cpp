@@ -1,6 +1,8 @@
 // The ranges of commands, for those from JSON and those made in C++ alike.
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
 #include "runtime/base/units.h"
 #include "runtime/document/command.h"
 
@@ -10,6 +12,9 @@ namespace {
 
 constexpr double kFarthest_m = 1.0e6;  // of any coordinate; the map may be left, not the world
 constexpr size_t kMaxDabs = 100'000, kMaxPrints = 100'000;
+constexpr size_t kMaxControlPoints = 10'000;
+constexpr double kHighest_m = 20'000, kSmallestHalf_m = 0.01, kLargestHalf_m = 5000,
+                 kLongestSpline_m = 200'000;
 constexpr double kRightAngle_rad = 1.5707963267948966;
 
 Status in_range(std::string_view name, double value, double low, double high) {
@@ -55,25 +60,109 @@ Status check(const PaintCommand& c) {
     return {};
 }
 
+Status check(const Crater& c) {
+    LOAM_TRY(place_ok("the crater", c.x_m, c.y_m));
+    LOAM_TRY(in_range("radius_m", c.radius_m, 0.1, 2000));
+    LOAM_TRY(in_range("depth_m", c.depth_m, 0, 4000));
+    return in_range("heat", c.heat, 0, 1);
+}
+
+Status check(const Footprint& print) {
+    LOAM_TRY(place_ok("a print", print.x_m, print.y_m));
+    LOAM_TRY(in_range("heading_rad", print.heading_rad, -1000, 1000));
+    LOAM_TRY(in_range("length_m", print.length_m, 0.05, 5));
+    LOAM_TRY(in_range("depth_m", print.depth_m, 0, 2));
+    if (print.foot != 0 && print.foot != 1)
+        return error("foot is {}, must be 0 (left) or 1 (right)", print.foot);
+    return {};
+}
+
+Status check(const DecalMaterial& m) {
+    for (int channel = 0; channel < 3; ++channel) LOAM_TRY(in_range("colour", m.colour[channel], 0, 1));
+    const DecalChannels& c = m.channels;
+    for (const auto& [name, value] : {std::pair("gloss", m.gloss),
+                                      {"metalness", m.metalness},
+                                      {"opacity", m.opacity},
+                                      {"edge", m.edge},
+                                      {"rough", m.rough},
+                                      {"channel albedo", c.albedo},
+                                      {"channel normal", c.normal},
+                                      {"channel gloss", c.gloss},
+                                      {"channel metalness", c.metalness},
+                                      {"channel occlusion", c.occlusion}})
+        LOAM_TRY(in_range(name, value, 0, 1));
+    if (m.tile_m == 0) return {};
+    return in_range("tile_m", m.tile_m, 0.05, 5000);
+}
+
+// Either sign; 0 is the singular case.
+Status half_ok(double half_m, double low_m) {
+    const Status status = in_range("half_m", std::abs(half_m), kSmallestHalf_m, kLargestHalf_m);
+    if (status.ok() && half_m >= low_m) return {};
+    return error("half_m is {}, must be {}{} … {} m", half_m, low_m < 0 ? "±" : "", kSmallestHalf_m,
+                 kLargestHalf_m);
+}
+
+Status check(const TerrainDecal& d) {
+    LOAM_TRY(place_ok("the decal", d.x_m, d.y_m));
+    for (int axis = 0; axis < 2; ++axis) LOAM_TRY(half_ok(d.half_m[axis], -kLargestHalf_m));
+    LOAM_TRY(in_range("heading_rad", d.heading_rad, -1000, 1000));
+    return check(d.material);
+}
+
+Status check(const VolumeDecal& v) {
+    LOAM_TRY(place_ok("the volume", v.center_m.x, v.center_m.y));
+    LOAM_TRY(in_range("the volume's z", v.center_m.z, -kHighest_m, kHighest_m));
+    for (int axis = 0; axis < 3; ++axis) LOAM_TRY(half_ok(v.half_m[axis], axis < 2 ? -kLargestHalf_m : 0));
+    for (int axis = 0; axis < 3; ++axis)
+        LOAM_TRY(in_range("direction", v.direction[axis], -kFarthest_m, kFarthest_m));
+    if (!(glm::dot(v.direction, v.direction) > 1e-12))
+        return error("the direction of a volume has no length, it must point where the volume projects");
+    LOAM_TRY(in_range("roll_rad", v.roll_rad, -1000, 1000));
+    return check(v.material);
+}
+
+Status check(const SplineDecal& s) {
+    if (s.points.size() < 4 || s.points.size() % 3 != 1)
+        return error("a spline has {} control points, must be 4, 7, 10 … (three a piece and one)",
+                     s.points.size());
+    if (s.points.size() > kMaxControlPoints)
+        return error("a spline has {} control points, the limit is {}", s.points.size(), kMaxControlPoints);
+    double polygon_m = 0;
+    for (size_t i = 0; i < s.points.size(); ++i) {
+        const SplinePoint& p = s.points[i];
+        LOAM_TRY(place_ok(fmt::format("control point {}", i), p.x_m, p.y_m));
+        LOAM_TRY(in_range(fmt::format("z of control point {}", i), p.z_m, -kHighest_m, kHighest_m));
+        LOAM_TRY(in_range(fmt::format("the width at control point {}", i), p.width_m, 0.02, 1000));
+        if (i > 0) polygon_m += std::hypot(p.x_m - s.points[i - 1].x_m, p.y_m - s.points[i - 1].y_m);
+    }
+    if (polygon_m < 0.01) return error("the control points of a spline all lie at one place");
+    if (polygon_m > kLongestSpline_m)
+        return error("the control points of a spline span {:.0f} m, the limit is {} m", polygon_m,
+                     kLongestSpline_m);
+    LOAM_TRY(in_range("fade_m", s.fade_m, 0, 10'000));
+    LOAM_TRY(in_range("carve", s.carve, 0, 1));
+    LOAM_TRY(in_range("shoulder_m", s.shoulder_m, 0, 1000));
+    return check(s.material);
+}
+
 Status check(const CraterCommand& c) {
-    LOAM_TRY(place_ok("the crater", c.crater.x_m, c.crater.y_m));
-    LOAM_TRY(in_range("radius_m", c.crater.radius_m, 0.1, 2000));
-    LOAM_TRY(in_range("depth_m", c.crater.depth_m, 0, 4000));
-    return in_range("heat", c.crater.heat, 0, 1);
+    return check(c.crater);
 }
 
 Status check(const FootprintsCommand& c) {
     if (c.prints.size() > kMaxPrints)
         return error("{} prints, the limit is {} a command", c.prints.size(), kMaxPrints);
-    for (const Footprint& print : c.prints) {
-        LOAM_TRY(place_ok("a print", print.x_m, print.y_m));
-        LOAM_TRY(in_range("heading_rad", print.heading_rad, -1000, 1000));
-        LOAM_TRY(in_range("length_m", print.length_m, 0.05, 5));
-        LOAM_TRY(in_range("depth_m", print.depth_m, 0, 2));
-        if (print.foot != 0 && print.foot != 1)
-            return error("foot is {}, must be 0 (left) or 1 (right)", print.foot);
-    }
+    for (const Footprint& print : c.prints) LOAM_TRY(check(print));
     return {};
+}
+
+Status check(const AddOperatorCommand& c) {
+    return check_shape(c.shape);
+}
+
+Status check(const EditOperatorCommand& c) {
+    return check_shape(c.shape);
 }
 
 template <typename Other>
@@ -82,6 +171,10 @@ Status check(const Other&) {
 }
 
 }  // namespace
+
+Status check_shape(const OperatorShape& shape) {
+    return std::visit([](const auto& kind) { return check(kind); }, shape);
+}
 
 Status check_command(const Command& command) {
     return std::visit([](const auto& body) { return check(body); }, command.body);

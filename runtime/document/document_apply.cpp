@@ -65,17 +65,8 @@ Status Document::Impl::compute(const SculptCommand& command, Change& change) {
 Status Document::Impl::compute(const PaintCommand& command, Change& change) {
     int layer = 0;
     if (command.layer) {
-        for (size_t i = 0; i < settings.layers.size(); ++i)
-            if (settings.layers[i].name == *command.layer) layer = int(i) + 1;
-        if (layer == 0) {
-            std::string known;
-            for (const LayerEntry& entry : settings.layers) {
-                if (!known.empty()) known += ", ";
-                known += entry.name;
-            }
-            return error("unknown layer \"{}\" (known: {})", *command.layer, known.empty() ? "none" : known);
-        }
-        --layer;
+        LOAM_TRY(known_layer(*command.layer));
+        while (settings.layers[size_t(layer)].name != *command.layer) ++layer;
     }
     change.texels.emplace(*pages, index, default_texel(settings));
     SlopeReader slopes(*pages, height, settings.default_height_mm);
@@ -92,7 +83,8 @@ Status Document::Impl::compute(const PaintCommand& command, Change& change) {
 }
 
 // `op`: its new state, or none to remove it.
-void Document::Impl::change_operator(uint64_t id, const std::optional<Operator>& op, Change& change) {
+void Document::Impl::change_operator(uint64_t id, std::optional<Operator> op, Change& change) {
+    if (op) prepare(*op);
     RowImage image{RowImage::Kind::op, int64_t(id), std::nullopt};
     if (op) {
         const std::string json = operator_json(*op);
@@ -101,13 +93,41 @@ void Document::Impl::change_operator(uint64_t id, const std::optional<Operator>&
     change.images.push_back(std::move(image));
     // Moved or switched: where it was and where it is.
     const Operator* before = operators.find(id);
-    for (const Operator* state : {before, op ? &*op : nullptr}) {
+    const Operator* after = op ? &*op : nullptr;
+    for (const Operator* state : {before, after}) {
         if (!state || (!state->enabled && !(before && before->enabled))) continue;
-        change.dirt.height.push_back(state->height_bounds());
+        const auto append = [](std::vector<WorldRect>& to, const std::vector<WorldRect>& rects) {
+            to.insert(to.end(), rects.begin(), rects.end());
+        };
+        append(change.dirt.height, state->height_rects());
         change.dirt.index.push_back(state->index_bounds());
-        change.dirt.texture.push_back(state->texture_bounds());
+        append(change.dirt.texture, state->texture_rects());
     }
-    change.operators[id] = op;
+    change.operators[id] = std::move(op);
+}
+
+Status Document::Impl::known_layer(const std::string& name) const {
+    std::string known;
+    for (const LayerEntry& entry : settings.layers) {
+        if (entry.name == name) return {};
+        if (!known.empty()) known += ", ";
+        known += entry.name;
+    }
+    return error("unknown layer \"{}\" (known: {})", name, known.empty() ? "none" : known);
+}
+
+Status Document::Impl::known_layer(const OperatorShape& shape) const {
+    const DecalMaterial* material = material_of(shape);
+    if (!material || material->layer.empty()) return {};
+    LOAM_TRY(known_layer(material->layer));
+    const auto entry = std::find_if(settings.layers.begin(), settings.layers.end(),
+                                    [&](const LayerEntry& e) { return e.name == material->layer; });
+    if (entry->blend)
+        return error(
+            "a decal shows the texture of a layer, and \"{}\" is a transition without one: name a layer, such "
+            "as \"{}\"",
+            material->layer, entry->blend->to);
+    return {};
 }
 
 Status Document::Impl::compute(const CraterCommand& command, Change& change) {
@@ -121,6 +141,33 @@ Status Document::Impl::compute(const FootprintsCommand& command, Change& change)
         const uint64_t id = change.next_operator++;
         change_operator(id, Operator{.id = id, .order = id, .enabled = true, .shape = print}, change);
     }
+    return {};
+}
+
+Status Document::Impl::compute(const AddOperatorCommand& command, Change& change) {
+    LOAM_TRY(known_layer(command.shape));
+    const uint64_t id = change.next_operator++;
+    change_operator(id, Operator{.id = id, .order = id, .enabled = true, .shape = command.shape}, change);
+    return {};
+}
+
+Status Document::Impl::compute(const EditOperatorCommand& command, Change& change) {
+    const Operator* op = operators.find(command.id);
+    if (!op) return error("there is no operator {}", command.id);
+    LOAM_TRY(known_layer(command.shape));
+    Operator edited = *op;
+    edited.shape = command.shape;
+    change_operator(command.id, std::move(edited), change);
+    return {};
+}
+
+Status Document::Impl::compute(const ReorderCommand& command, Change& change) {
+    const Operator* op = operators.find(command.id);
+    if (!op) return error("there is no operator {}", command.id);
+    if (op->order == command.order) return {};
+    Operator moved = *op;
+    moved.order = command.order;
+    change_operator(command.id, std::move(moved), change);
     return {};
 }
 

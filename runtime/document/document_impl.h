@@ -80,11 +80,16 @@ struct Document::Impl {
     Status compute(const PaintCommand& command, Change& change);
     Status compute(const CraterCommand& command, Change& change);
     Status compute(const FootprintsCommand& command, Change& change);
+    Status compute(const AddOperatorCommand& command, Change& change);
+    Status compute(const EditOperatorCommand& command, Change& change);
+    Status compute(const ReorderCommand& command, Change& change);
     Status compute(const SetOperatorCommand& command, Change& change);
     Status compute(const RemoveOperatorCommand& command, Change& change);
     Status compute(const UndoCommand&, Change&) { return error("undo is not a command of the journal"); }
     Status compute(const RedoCommand&, Change&) { return error("redo is not a command of the journal"); }
-    void change_operator(uint64_t id, const std::optional<Operator>& op, Change& change);
+    void change_operator(uint64_t id, std::optional<Operator> op, Change& change);
+    [[nodiscard]] Status known_layer(const std::string& name) const;
+    [[nodiscard]] Status known_layer(const OperatorShape& shape) const;  // that a decal is made of
     Status write_change(Change& change, const JournalRow& row, const PageBalance& before);
     Result<Dirt> commit_change(Change& change, const Command& command);
     // Swaps the rows of the journal heads [first, end), the direction that `applied` names, in one

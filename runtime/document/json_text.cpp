@@ -1,110 +1,15 @@
-// Commands and operators as JSON, both ways: the only file that sees nlohmann-json. Its exceptions, and the
-// `Refused` of this file, end at the two parse functions.
+// Commands and operators as JSON, both ways. Exceptions of nlohmann-json, and json_fields.h's `Refused`, end
+// at the two parse functions.
 #include <cmath>
-#include <set>
-
-#include <nlohmann/json.hpp>
 
 #include "runtime/document/command.h"
+#include "runtime/document/decal_json.h"
 #include "runtime/document/operator_json.h"
 
 namespace loam {
 
 namespace {
 
-using Json = nlohmann::json;
-
-struct Refused {
-    std::string message;
-};
-
-template <typename... Args>
-[[noreturn]] void refuse(fmt::format_string<Args...> format, Args&&... args) {
-    throw Refused{fmt::format(format, std::forward<Args>(args)...)};
-}
-
-// An object's fields: every one asked for is marked, and finish() refuses what nobody asked for.
-class Fields {
-  public:
-    Fields(const Json& object, std::string place) : object_(object), place_(std::move(place)) {
-        if (!object.is_object()) refuse("{} must be an object, found {}", place_, object.type_name());
-    }
-    [[nodiscard]] const std::string& place() const { return place_; }
-
-    const Json* find(const char* key) {
-        known_.insert(key);
-        const auto found = object_.find(key);
-        return found == object_.end() ? nullptr : &*found;
-    }
-    const Json& need(const char* key) {
-        if (const Json* value = find(key)) return *value;
-        refuse("{}: \"{}\" is missing", place_, key);
-    }
-
-    double number(const char* key) { return number_of(need(key), key); }
-    double number(const char* key, double otherwise) {
-        const Json* value = find(key);
-        return value ? number_of(*value, key) : otherwise;
-    }
-    uint64_t whole(const char* key, uint64_t most) { return whole_of(need(key), key, most); }
-    uint64_t whole(const char* key, uint64_t most, uint64_t otherwise) {
-        const Json* value = find(key);
-        return value ? whole_of(*value, key, most) : otherwise;
-    }
-    bool truth(const char* key, bool otherwise) { return find(key) ? truth(key) : otherwise; }
-    bool truth(const char* key) {
-        const Json& value = need(key);
-        if (!value.is_boolean())
-            refuse("{}: \"{}\" must be true or false, found {}", place_, key, value.type_name());
-        return value.get<bool>();
-    }
-    std::string text(const char* key) { return text_of(need(key), key); }
-    std::string text_of(const Json& value, const char* key) const {
-        if (!value.is_string()) refuse("{}: \"{}\" must be a text, found {}", place_, key, value.type_name());
-        return value.get<std::string>();
-    }
-    double number_of(const Json& value, const std::string& what) const {
-        if (!value.is_number())
-            refuse("{}: \"{}\" must be a number, found {}", place_, what, value.type_name());
-        const double number = value.get<double>();
-        if (!std::isfinite(number)) refuse("{}: \"{}\" must be a finite number", place_, what);
-        return number;
-    }
-    const Json& list(const char* key) {
-        const Json& value = need(key);
-        if (!value.is_array()) refuse("{}: \"{}\" must be a list, found {}", place_, key, value.type_name());
-        return value;
-    }
-
-    void finish() const {
-        for (const auto& [key, value] : object_.items()) {
-            if (known_.count(key) != 0) continue;
-            std::string known;
-            for (const std::string& name : known_) {
-                if (!known.empty()) known += ", ";
-                known += name;
-            }
-            refuse("{}: unknown key \"{}\" (known: {})", place_, key, known);
-        }
-    }
-
-  private:
-    uint64_t whole_of(const Json& value, const char* key, uint64_t most) const {
-        if (!value.is_number_integer())
-            refuse("{}: \"{}\" must be a whole number, found {}", place_, key,
-                   value.is_number() ? value.dump() : value.type_name());
-        if (!value.is_number_unsigned() || value.get<uint64_t>() > most)
-            refuse("{}: \"{}\" is {}, must be 0 … {}", place_, key, value.dump(), most);
-        return value.get<uint64_t>();
-    }
-
-    const Json& object_;
-    std::string place_;
-    std::set<std::string> known_;
-};
-
-constexpr uint64_t kMaxU32 = 0xffffffffu;
-constexpr uint64_t kMaxId = uint64_t(1) << 62;
 constexpr std::pair<const char*, SculptMode> kModes[] = {{"raise", SculptMode::raise},
                                                          {"lower", SculptMode::lower},
                                                          {"smooth", SculptMode::smooth},
@@ -281,11 +186,72 @@ void write(Json& json, const RedoCommand&) {
     json["cmd"] = "redo";
 }
 
+OperatorShape read_shape(const std::string& kind, Fields& fields) {
+    if (kind == "crater") return read_crater(fields);
+    if (kind == "footprint") return read_print(fields, {});
+    if (kind == "decal") return read_decal(fields);
+    if (kind == "spline") return read_spline(fields);
+    if (kind == "volume") return read_volume(fields);
+    refuse("{}: unknown kind \"{}\" (known: crater, footprint, decal, spline, volume)", fields.place(), kind);
+}
+
+// Its kind's name; its parameters go into `json`.
+struct ShapeWriter {
+    Json& json;
+    const char* operator()(const Crater& crater) const {
+        write_crater(json, crater);
+        return "crater";
+    }
+    const char* operator()(const Footprint& print) const {
+        write_print(json, print);
+        json["length_m"] = print.length_m;
+        json["depth_m"] = print.depth_m;
+        json["seed"] = print.seed;
+        return "footprint";
+    }
+    const char* operator()(const TerrainDecal& decal) const {
+        write_decal(json, decal);
+        return "decal";
+    }
+    const char* operator()(const SplineDecal& spline) const {
+        write_spline(json, spline);
+        return "spline";
+    }
+    const char* operator()(const VolumeDecal& volume) const {
+        write_volume(json, volume);
+        return "volume";
+    }
+};
+
+void write(Json& json, const AddOperatorCommand& c) {
+    json["cmd"] = std::visit(ShapeWriter{json}, c.shape);
+}
+void write(Json& json, const EditOperatorCommand& c) {
+    json["kind"] = std::visit(ShapeWriter{json}, c.shape);
+    json["cmd"] = "edit";
+    json["id"] = c.id;
+}
+void write(Json& json, const ReorderCommand& c) {
+    json["cmd"] = "reorder";
+    json["id"] = c.id;
+    json["order"] = c.order;
+}
+
 CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "sculpt") return read_sculpt(fields);
     if (name == "paint") return read_paint(fields);
     if (name == "crater") return CraterCommand{read_crater(fields)};
     if (name == "footprints") return read_footprints(fields);
+    if (name == "decal" || name == "spline" || name == "volume")
+        return AddOperatorCommand{read_shape(name, fields)};
+    if (name == "edit") {
+        const uint64_t id = fields.whole("id", kMaxId);
+        return EditOperatorCommand{id, read_shape(fields.text("kind"), fields)};
+    }
+    if (name == "reorder") {
+        const uint64_t id = fields.whole("id", kMaxId);
+        return ReorderCommand{id, fields.whole("order", kMaxId)};
+    }
     if (name == "operator") {
         SetOperatorCommand c;
         c.id = fields.whole("id", kMaxId);
@@ -295,8 +261,11 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "remove") return RemoveOperatorCommand{fields.whole("id", kMaxId)};
     if (name == "undo") return UndoCommand{};
     if (name == "redo") return RedoCommand{};
-    refuse("unknown command \"{}\" (known: sculpt, paint, crater, footprints, operator, remove, undo, redo)",
-           name);
+    refuse(
+        "unknown command \"{}\" (known: sculpt, paint, crater, footprints, decal, spline, volume, edit, "
+        "reorder, "
+        "operator, remove, undo, redo)",
+        name);
 }
 
 // Runs a reader over the parsed text; whatever is thrown becomes an error.
@@ -349,17 +318,7 @@ std::string operator_json(const Operator& op) {
     Json json;
     json["order"] = op.order;
     json["enabled"] = op.enabled;
-    if (const auto* crater = std::get_if<Crater>(&op.shape)) {
-        json["kind"] = "crater";
-        write_crater(json, *crater);
-    } else {
-        const auto& print = std::get<Footprint>(op.shape);
-        json["kind"] = "footprint";
-        write_print(json, print);
-        json["length_m"] = print.length_m;
-        json["depth_m"] = print.depth_m;
-        json["seed"] = print.seed;
-    }
+    json["kind"] = std::visit(ShapeWriter{json}, op.shape);
     return dump(json);
 }
 
@@ -371,23 +330,14 @@ Result<Operator> parse_operator(uint64_t id, std::string_view text) {
         result.order = fields.whole("order", kMaxId);
         result.enabled = fields.truth("enabled");
         const std::string kind = fields.text("kind");
-        if (kind == "crater")
-            result.shape = read_crater(fields);
-        else if (kind == "footprint")
-            result.shape = read_print(fields, {});
-        else
-            refuse("operator {}: unknown kind \"{}\" (known: crater, footprint)", id, kind);
+        result.shape = read_shape(kind, fields);
         fields.finish();
         return result;
     });
     if (!op.ok()) return op;
-    Command same_ranges;
-    if (const auto* crater = std::get_if<Crater>(&op->shape))
-        same_ranges.body = CraterCommand{*crater};
-    else
-        same_ranges.body = FootprintsCommand{{std::get<Footprint>(op->shape)}};
-    const Status status = check_command(same_ranges);
+    const Status status = check_shape(op->shape);
     if (!status.ok()) return error("operator {}: {}", id, status.message());
+    prepare(*op);
     return op;
 }
 

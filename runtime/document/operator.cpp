@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+
+#include "runtime/base/check.h"
+#include "runtime/document/spline_path.h"
 #include "shaders/document/crater_math.h"
 #include "shaders/document/footprint_math.h"
 
@@ -12,8 +17,12 @@ namespace {
 
 using glm::vec2;
 
+WorldRect around(double x_m, double y_m, double half_x_m, double half_y_m) {
+    return {x_m - half_x_m, y_m - half_y_m, x_m + half_x_m, y_m + half_y_m};
+}
+
 WorldRect square(double x_m, double y_m, double half_m) {
-    return {x_m - half_m, y_m - half_m, x_m + half_m, y_m + half_m};
+    return around(x_m, y_m, half_m, half_m);
 }
 
 // Grids of different pages reach one place by different sums: their positions may differ in the last bit.
@@ -77,13 +86,169 @@ void apply_footprint_height(const Footprint& print, const WorldRect& rect,
     });
 }
 
+double ramp(double t) {
+    t = std::clamp(t, 0.0, 1.0);
+    return t * t * (3.0 - 2.0 * t);
+}
+
+const SplinePath& path_of(const SplineDecal& spline) {
+    LOAM_CHECK(spline.path, "an operator of a document has been prepared");
+    return *spline.path;
+}
+
+double carve_reach_m(const SplineDecal& spline) {
+    return path_of(spline).half_width_m() + spline.shoulder_m;
+}
+
+// The nearest segment to each sample decides. Which others are looked at makes no difference: one that may be
+// the nearest within reach is always among them, and of equally near ones the first counts.
+void apply_carve(const SplineDecal& spline, const SampleGrid<double>& heights) {
+    const SplinePath& path = path_of(spline);
+    const double reach_m = carve_reach_m(spline);
+    struct Nearest {
+        double squared_m = INFINITY, along_m = 0;
+        uint32_t segment = 0;
+    };
+    thread_local std::vector<Nearest> nearest;
+    nearest.clear();
+    const WorldRect grid{heights.x0_m, heights.y0_m, heights.x0_m + (heights.width - 1) * heights.step_m,
+                         heights.y0_m + (heights.height - 1) * heights.step_m};
+    for (const SplinePiece& piece : path.pieces()) {
+        if (!piece.line.grown(reach_m).overlaps(grid.grown(heights.step_m))) continue;
+        if (nearest.empty()) nearest.resize(size_t(heights.width) * size_t(heights.height));
+        for (uint32_t k = piece.first; k < piece.first + piece.count; ++k) {
+            const SplineSegment& s = path.segments()[k];
+            const glm::dvec2 to = s.from_m + s.direction * s.length_m;
+            const WorldRect box{std::min(s.from_m.x, to.x), std::min(s.from_m.y, to.y),
+                                std::max(s.from_m.x, to.x), std::max(s.from_m.y, to.y)};
+            const GridRange range = samples_in(heights, box.grown(reach_m));
+            for (int j = range.j0; j < range.j1; ++j)
+                for (int i = range.i0; i < range.i1; ++i) {
+                    const double dx = settled(heights.x0_m + i * heights.step_m) - s.from_m.x;
+                    const double dy = settled(heights.y0_m + j * heights.step_m) - s.from_m.y;
+                    const double along = std::clamp(dx * s.direction.x + dy * s.direction.y, 0.0, s.length_m);
+                    const double ax = dx - along * s.direction.x, ay = dy - along * s.direction.y;
+                    const double squared = ax * ax + ay * ay;
+                    Nearest& n = nearest[size_t(j) * size_t(heights.width) + size_t(i)];
+                    if (squared < n.squared_m) n = {squared, along, k};
+                }
+        }
+    }
+    if (nearest.empty()) return;
+    for (int j = 0; j < heights.height; ++j)
+        for (int i = 0; i < heights.width; ++i) {
+            const Nearest& n = nearest[size_t(j) * size_t(heights.width) + size_t(i)];
+            if (!(n.squared_m < reach_m * reach_m)) continue;
+            const SplineSegment& s = path.segments()[n.segment];
+            const double share = n.along_m / s.length_m, at_m = s.start_m + n.along_m;
+            const double beyond_m =
+                std::sqrt(n.squared_m) - (s.half_from_m + share * (s.half_to_m - s.half_from_m));
+            double weight = spline.carve;
+            if (beyond_m > 0)
+                weight *= spline.shoulder_m > 0 ? 1.0 - ramp(beyond_m / spline.shoulder_m) : 0.0;
+            if (spline.fade_m > 0)
+                weight *= ramp(at_m / spline.fade_m) * ramp((path.length_m() - at_m) / spline.fade_m);
+            const double profile_m = s.z_from_m + share * (s.z_to_m - s.z_from_m);
+            double& height = heights.at(i, j);
+            height += weight * (profile_m - height);
+        }
+}
+
+// World rectangles around a spline's pieces.
+std::vector<WorldRect> rects_along(const SplineDecal& spline, double reach_m) {
+    std::vector<WorldRect> rects;
+    for (const SplinePiece& piece : path_of(spline).pieces()) rects.push_back(piece.line.grown(reach_m));
+    return rects;
+}
+
+WorldRect all_of(const std::vector<WorldRect>& rects) {
+    WorldRect all;
+    for (const WorldRect& rect : rects) all = united(all, rect);
+    return all;
+}
+
+// What an operator does to each map, a set of overloads a kind.
+struct HeightRects {
+    using Rects = std::vector<WorldRect>;
+    Rects operator()(const Crater& c) const {
+        return {square(c.x_m, c.y_m, c.radius_m * double(kCraterHeightReach))};
+    }
+    Rects operator()(const Footprint& f) const {
+        return {square(f.x_m, f.y_m, f.length_m * double(kFootprintReach))};
+    }
+    Rects operator()(const SplineDecal& s) const {
+        return s.carve > 0 ? rects_along(s, carve_reach_m(s)) : Rects{};
+    }
+    Rects operator()(const TerrainDecal&) const { return {}; }
+    Rects operator()(const VolumeDecal&) const { return {}; }
+};
+
+struct TextureRects {
+    using Rects = std::vector<WorldRect>;
+    Rects operator()(const Crater& c) const {
+        return {square(c.x_m, c.y_m, c.radius_m * double(kCraterMarkReach))};
+    }
+    Rects operator()(const Footprint& f) const {
+        return {square(f.x_m, f.y_m, f.length_m * double(kFootprintReach))};
+    }
+    Rects operator()(const SplineDecal& s) const { return rects_along(s, path_of(s).half_width_m()); }
+    Rects operator()(const TerrainDecal& d) const {
+        const double c = std::abs(std::cos(d.heading_rad)), s = std::abs(std::sin(d.heading_rad));
+        const glm::dvec2 half = glm::abs(d.half_m);
+        return {around(d.x_m, d.y_m, c * half.x + s * half.y, s * half.x + c * half.y)};
+    }
+    Rects operator()(const VolumeDecal& v) const {
+        const VolumeAxes axes = axes_of(v);
+        const glm::dvec3 half =
+            glm::abs(axes.x * v.half_m.x) + glm::abs(axes.y * v.half_m.y) + glm::abs(axes.z * v.half_m.z);
+        return {around(v.center_m.x, v.center_m.y, half.x, half.y)};
+    }
+};
+
+struct ApplyHeight {
+    const SampleGrid<double>& heights_m;
+    void operator()(const Crater& c) const { apply_crater_height(c, HeightRects{}(c)[0], heights_m); }
+    void operator()(const Footprint& f) const { apply_footprint_height(f, HeightRects{}(f)[0], heights_m); }
+    void operator()(const SplineDecal& s) const {
+        if (s.carve > 0) apply_carve(s, heights_m);
+    }
+    void operator()(const TerrainDecal&) const {}
+    void operator()(const VolumeDecal&) const {}
+};
+
 }  // namespace
 
+const DecalMaterial* material_of(const OperatorShape& shape) {
+    if (const auto* decal = std::get_if<TerrainDecal>(&shape)) return &decal->material;
+    if (const auto* spline = std::get_if<SplineDecal>(&shape)) return &spline->material;
+    if (const auto* volume = std::get_if<VolumeDecal>(&shape)) return &volume->material;
+    return nullptr;
+}
+
+VolumeAxes axes_of(const VolumeDecal& volume) {
+    const glm::dvec3 z = -glm::normalize(volume.direction);
+    const double level = std::hypot(z.x, z.y);
+    const glm::dvec3 x = level > 1e-9 ? glm::dvec3(-z.y / level, z.x / level, 0) : glm::dvec3(1, 0, 0);
+    const glm::dvec3 y = glm::cross(z, x);
+    const double c = std::cos(volume.roll_rad), s = std::sin(volume.roll_rad);
+    return {x * c + y * s, y * c - x * s, z};
+}
+
+void prepare(Operator& op) {
+    if (auto* spline = std::get_if<SplineDecal>(&op.shape))
+        spline->path = std::make_shared<SplinePath>(spline->points);
+}
+
+std::vector<WorldRect> Operator::height_rects() const {
+    return std::visit(HeightRects{}, shape);
+}
+
+std::vector<WorldRect> Operator::texture_rects() const {
+    return std::visit(TextureRects{}, shape);
+}
+
 WorldRect Operator::height_bounds() const {
-    if (const auto* crater = std::get_if<Crater>(&shape))
-        return square(crater->x_m, crater->y_m, crater->radius_m * double(kCraterHeightReach));
-    const auto& print = std::get<Footprint>(shape);
-    return square(print.x_m, print.y_m, print.length_m * double(kFootprintReach));
+    return all_of(height_rects());
 }
 
 WorldRect Operator::index_bounds() const {
@@ -93,17 +258,11 @@ WorldRect Operator::index_bounds() const {
 }
 
 WorldRect Operator::texture_bounds() const {
-    if (const auto* crater = std::get_if<Crater>(&shape))
-        return square(crater->x_m, crater->y_m, crater->radius_m * double(kCraterMarkReach));
-    const auto& print = std::get<Footprint>(shape);
-    return square(print.x_m, print.y_m, print.length_m * double(kFootprintReach));
+    return all_of(texture_rects());
 }
 
 void apply_height(const Operator& op, const SampleGrid<double>& heights_m) {
-    if (const auto* crater = std::get_if<Crater>(&op.shape))
-        apply_crater_height(*crater, op.height_bounds(), heights_m);
-    else
-        apply_footprint_height(std::get<Footprint>(op.shape), op.height_bounds(), heights_m);
+    std::visit(ApplyHeight{heights_m}, op.shape);
 }
 
 void apply_index(const Operator& op, const ResolvedRoles& roles, const SampleGrid<IndexTexel>& texels) {

@@ -10,6 +10,7 @@
 
 #include "runtime/base/rect.h"
 #include "runtime/base/result.h"
+#include "runtime/document/ground_decal.h"
 #include "runtime/store/index_texel.h"
 
 namespace loam {
@@ -31,7 +32,8 @@ struct Footprint {
     uint32_t seed = 0;
 };
 
-using OperatorShape = std::variant<Crater, Footprint>;
+using OperatorShape = std::variant<Crater, Footprint, TerrainDecal, SplineDecal, VolumeDecal>;
+[[nodiscard]] const DecalMaterial* material_of(const OperatorShape& shape);  // null: has none
 
 struct Operator {
     uint64_t id = 0;     // unique in the document, never reused
@@ -44,7 +46,15 @@ struct Operator {
     [[nodiscard]] WorldRect height_bounds() const;
     [[nodiscard]] WorldRect index_bounds() const;
     [[nodiscard]] WorldRect texture_bounds() const;
+    // The same as rectangles that together hold all of it: a spline's lie along it, the rest have one or
+    // none.
+    [[nodiscard]] std::vector<WorldRect> height_rects() const;
+    [[nodiscard]] std::vector<WorldRect> texture_rects() const;
 };
+
+// Works out what is kept beside an operator's parameters (a spline's path). Every operator of a document has
+// been through it.
+void prepare(Operator& op);
 
 // A grid of samples to change in place: sample (i, j) is at (x0 + i*step, y0 + j*step) metres.
 template <typename T>
@@ -60,8 +70,8 @@ struct ResolvedRoles {  // LayerRoles as indices
 };
 
 // Footprints change heights and are drawn into the texture; craters change heights, layers and tint, and may
-// be drawn too. The mathematics is in shaders/document/crater_math.h and footprint_math.h, for shaders as
-// well.
+// be drawn too; splines are drawn and may carve heights; terrain and volume decals are drawn. The mathematics
+// of craters and footprints is in shaders/document/crater_math.h and footprint_math.h, for shaders as well.
 //
 // Heights in metres. A sample's result depends on the sample's position only, never on the grid it is part
 // of: pages of every level must agree.

@@ -44,7 +44,10 @@ void OperatorIndex::remove(const Operator* op, const WorldRect& bounds) {
     auto& cells = levels_[level].cells;
     const auto cell = cells.find(key_of(cell_of(bounds.min_x, side), cell_of(bounds.min_y, side)));
     LOAM_CHECK(cell != cells.end(), "an operator was removed from where it is not");
-    std::erase_if(cell->second, [&](const Entry& entry) { return entry.op == op; });
+    const auto entry = std::find_if(cell->second.begin(), cell->second.end(),
+                                    [&](const Entry& e) { return e.op == op && e.bounds == bounds; });
+    LOAM_CHECK(entry != cell->second.end(), "an operator was removed with bounds it was not added with");
+    cell->second.erase(entry);
     if (cell->second.empty()) cells.erase(cell);
     if (cells.empty()) levels_.erase(level);
 }
@@ -74,6 +77,7 @@ void OperatorIndex::query(const WorldRect& rect, std::vector<const Operator*>& o
     std::sort(out.begin(), out.end(), [](const Operator* a, const Operator* b) {
         return a->order != b->order ? a->order < b->order : a->id < b->id;
     });
+    out.erase(std::unique(out.begin(), out.end()), out.end());
 }
 
 }  // namespace loam

@@ -15,8 +15,8 @@ namespace loam {
 
 class OperatorIndex {
   public:
-    // Empty bounds: not indexed. The operator must outlive its entry, and be removed with the bounds it was
-    // added with.
+    // Empty bounds: not indexed. An operator may have several. It must outlive its entries, and each be
+    // removed with the bounds it was added with.
     void add(const Operator* op, const WorldRect& bounds);
     void remove(const Operator* op, const WorldRect& bounds);
     // Appends nothing twice; ascending (order, id); enabled operators only. Clears `out` first.

@@ -7,9 +7,9 @@ namespace loam {
 void OperatorSet::set(const Operator& op) {
     remove(op.id);
     auto owned = std::make_unique<Operator>(op);
-    height_.add(owned.get(), op.height_bounds());
+    for (const WorldRect& rect : op.height_rects()) height_.add(owned.get(), rect);
     index_.add(owned.get(), op.index_bounds());
-    texture_.add(owned.get(), op.texture_bounds());
+    for (const WorldRect& rect : op.texture_rects()) texture_.add(owned.get(), rect);
     by_id_.emplace(op.id, std::move(owned));
 }
 
@@ -17,9 +17,9 @@ void OperatorSet::remove(uint64_t id) {
     const auto found = by_id_.find(id);
     if (found == by_id_.end()) return;
     const Operator* op = found->second.get();
-    height_.remove(op, op->height_bounds());
+    for (const WorldRect& rect : op->height_rects()) height_.remove(op, rect);
     index_.remove(op, op->index_bounds());
-    texture_.remove(op, op->texture_bounds());
+    for (const WorldRect& rect : op->texture_rects()) texture_.remove(op, rect);
     by_id_.erase(found);
 }
 

@@ -41,6 +41,10 @@ class Verifier {
     void fail(fmt::format_string<Args...> format, Args&&... args) {
         if (faults_.size() < kMostFaults) faults_.push_back(fmt::format(format, std::forward<Args>(args)...));
     }
+    [[nodiscard]] bool has_layer(const std::string& name) const {
+        return std::any_of(settings_.layers.begin(), settings_.layers.end(),
+                           [&](const LayerEntry& layer) { return layer.name == name; });
+    }
     static std::string name_of(const PageKey& key) {
         return fmt::format("page {}, {} of mip {} of the {} map", key.x, key.y, key.mip,
                            key.map == BaseMap::height ? "height" : "index");
@@ -178,6 +182,10 @@ class Verifier {
                 fail("{}", op.message());
             else if (int64_t(id) >= next->value_or(1))
                 fail("operator {} has an id that has not been given out yet", id);
+            const DecalMaterial* material = op.ok() ? material_of(op->shape) : nullptr;
+            if (material && !material->layer.empty() && !has_layer(material->layer))
+                fail("operator {} is made of the layer \"{}\", which the project does not have", id,
+                     material->layer);
             return Status();
         });
     }

@@ -104,10 +104,10 @@ struct Renderer::Impl {
     std::optional<AnnouncedView> announced;
     Camera last_camera;
     double camera_speed_m_s = 0;
-    std::vector<gpu::PassTime> pass_times;  // of the newest finished frame
-    gpu::UploadSlice decals;                // of direct shading, this frame's
-    bool has_decals = false;
-    gpu::UploadSlice facts, squares;        // of debug views, this frame's
+    std::vector<gpu::PassTime> pass_times;      // of the newest finished frame
+    gpu::UploadSlice decals, paints, segments;  // of direct shading, this frame's
+    bool has_decals = false, has_paints = false;
+    gpu::UploadSlice facts, squares;  // of debug views, this frame's
     shared::FrameUniforms last_uniforms{};  // for resolve_again
 
     Status create_texture(gpu::FrameRing& ring);
@@ -278,14 +278,21 @@ void Renderer::Impl::upload_direct_decals(gpu::FrameRing& ring, double pixels_pe
         const double side = patch.stride * patches.step_m * kPatchQuads;
         ground.push_back({corner.x, corner.y, corner.x + side, corner.y + side});
     }
-    const std::vector<shared::DirectDecal> found =
-        direct_decals(document, {.camera_m = {last_camera.position_m.x, last_camera.position_m.y},
-                                 .pixels_per_radian = pixels_per_radian,
-                                 .footprint_bias = footprint_bias,
-                                 .ground = ground});
-    has_decals = !found.empty();
-    decals = ring.upload(std::max<size_t>(found.size(), 1) * sizeof(shared::DirectDecal));
-    std::copy(found.begin(), found.end(), decals.as<shared::DirectDecal>());
+    const DirectDecals found = direct_decals(document, *layers,
+                                             {.camera_m = last_camera.position_m,
+                                              .pixels_per_radian = pixels_per_radian,
+                                              .footprint_bias = footprint_bias,
+                                              .ground = ground});
+    has_decals = !found.decals.empty();
+    has_paints = !found.paints.empty();
+    const auto upload = [&ring]<typename T>(const std::vector<T>& list) {
+        const gpu::UploadSlice slice = ring.upload(std::max<size_t>(list.size(), 1) * sizeof(T));
+        std::copy(list.begin(), list.end(), slice.as<T>());
+        return slice;
+    };
+    decals = upload(found.decals);
+    paints = upload(found.paints);
+    segments = upload(found.segments);
 }
 
 ResolveInputs Renderer::Impl::resolve_inputs(const gpu::UploadSlice& uniform_slice) {
@@ -297,7 +304,10 @@ ResolveInputs Renderer::Impl::resolve_inputs(const gpu::UploadSlice& uniform_sli
             .size = picture_size,
             .uniforms = uniform_slice,
             .decals = decals,
+            .paints = paints,
+            .segments = segments,
             .has_decals = has_decals,
+            .has_paints = has_paints,
             .facts = facts,
             .squares = squares};
 }
@@ -340,6 +350,7 @@ void Renderer::on_dirt(const Dirt& dirt) {
     r.shadows->on_dirt(dirt.height);
     r.indices->on_dirt(dirt.index);
     r.textures.on_dirt(dirt.index, dirt.texture);
+    r.textures.on_height_dirt(dirt.height);
 }
 
 void Renderer::announce(const std::optional<Camera>& camera) {

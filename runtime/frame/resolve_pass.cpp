@@ -66,7 +66,9 @@ std::vector<gpu::Bound> direct_material(const ResolveInputs& in) {
             {s + 6, in.layers.normal_gloss_occlusion.view(), in.layers.sampler},
             {s + 7, in.layers.metalness.view(), in.layers.sampler},
             {s + 8, *in.decals.buffer, in.decals.offset, in.decals.size_bytes},
-            {s + 9, in.layers.distortion_map().view(), in.layers.sampler}};
+            {s + 9, in.layers.distortion_map().view(), in.layers.sampler},
+            {s + 10, *in.paints.buffer, in.paints.offset, in.paints.size_bytes},
+            {s + 11, *in.segments.buffer, in.segments.offset, in.segments.size_bytes}};
 }
 
 std::vector<gpu::Bound> floor_material(const ResolveInputs& in) {
@@ -83,7 +85,7 @@ Result<ResolvePass> ResolvePass::create(gpu::Device& device, const LayerSet& lay
     LOAM_TRY(pass.make_fixed());
     for (const bool at_rest : {false, true}) {
         const FrameSettings settings{.at_rest = at_rest, .filter = at_rest ? resting : moving};
-        Variant v = pass.variant(settings, ResolvePart::all, false);
+        Variant v = pass.variant(settings, ResolvePart::all, false, false);
         for (v.taps = v.tiles ? 1 : v.taps; v.taps <= kMaxTaps; v.taps *= 2) {
             if (v.tiles) v.probes = probes_of(v.taps);
             if (auto made = pass.pipeline(v, layers, textures); !made) return made.error();
@@ -114,14 +116,15 @@ Status ResolvePass::make_fixed() {
 }
 
 ResolvePass::Variant ResolvePass::variant(const FrameSettings& settings, ResolvePart part,
-                                          bool has_decals) const {
+                                          bool has_decals, bool has_paints) const {
     using Ground = Variant::Ground;
     Variant v{.fine_shadows = settings.at_rest};
     if (part == ResolvePart::floor) {
         v.ground = Ground::floor;
     } else if (settings.shading != Shading::virtual_texture) {
         v.ground = settings.shading == Shading::direct ? Ground::direct : Ground::direct_texels;
-        v.decals = has_decals;
+        v.decals = has_decals || has_paints;
+        v.paints = has_paints;
     } else {
         v.debug = settings.debug != DebugView::none;
         v.map = debug_is_map(settings.debug);
@@ -156,13 +159,14 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
                            : v.debug ? "frame/resolve_debug.frag"
                                      : "frame/resolve.frag",
         .push_bytes = sizeof(shared::ResolvePush),
-        // 0: fine shadows, 20: both mips of a page, 21: layers with metal, 22: decals, 25: texels,
-        // 26: taps, 27: look-ups they are shared among, 28: the sampler's own anisotropy, 30, 31: the page's
+        // 0: fine shadows, 20: both mips of a page, 21: layers with metal, 22: decals, 23: of materials,
+        // 25: texels, 26: taps, 27: look-ups they are shared among, 28: the sampler's own anisotropy, 30, 31: the page's
         // layout and channels, 40: tile hiding, 41: distortion, 42: transitions.
         .constants = {{0, v.fine_shadows},
                       {20, v.two_mips},
                       {21, layers.has_metal ? 1u : 0u},
                       {22, v.decals},
+                      {23, v.paints},
                       {25, v.ground == Ground::direct_texels},
                       {26, uint32_t(v.taps)},
                       {27, uint32_t(v.probes)},
@@ -185,6 +189,8 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
     if (direct) {
         d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images));
         d.bindings.push_back(gpu::sampled_image(kMaterialSlot + buffers + images + 1));
+        d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images + 2));
+        d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images + 3));
     }
     if (v.debug) d.bindings.push_back(gpu::storage_buffer(kDebugFactsSlot));
     if (v.map) {
@@ -225,7 +231,7 @@ Status ResolvePass::cmd_tiles(gpu::Commands& commands, const ResolveInputs& in, 
 
 Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
                                const FrameSettings& settings, ResolvePart part) {
-    const Variant v = variant(settings, part, in.has_decals);
+    const Variant v = variant(settings, part, in.has_decals, in.has_paints);
     const bool floor = part == ResolvePart::floor, direct = settings.shading != Shading::virtual_texture;
     use_material(commands, in, direct);
     if (v.hardware && !anisotropic_.handle()) {

@@ -26,11 +26,11 @@ struct ResolveInputs {
     VirtualTexture& texture;
     IndexMap& indices;
     LayerSet& layers;
-    glm::uvec2 size;            // pixels of the targets that the frame fills
-    gpu::UploadSlice uniforms;  // FrameUniforms
-    gpu::UploadSlice decals;    // DirectDecal, for direct shading
-    bool has_decals = false;
-    gpu::UploadSlice facts, squares;  // VtPlaceFacts and VtImageSquare, for debug views
+    glm::uvec2 size;                            // pixels of the targets that the frame fills
+    gpu::UploadSlice uniforms;                  // FrameUniforms
+    gpu::UploadSlice decals, paints, segments;  // DirectDecal, PaintDecal, PaintSegment, for direct shading
+    bool has_decals = false, has_paints = false;
+    gpu::UploadSlice facts, squares;            // VtPlaceFacts and VtImageSquare, for debug views
 };
 
 // The frame draws sky and ground (or the sky alone, where a debug view draws the ground); benches draw the
@@ -56,7 +56,7 @@ class ResolvePass {
     // Everything that makes it another pipeline.
     struct Variant {
         enum class Ground { cached, direct, direct_texels, floor } ground = Ground::cached;
-        bool fine_shadows = false, decals = false, tiles = false;
+        bool fine_shadows = false, decals = false, paints = false, tiles = false;
         bool debug = false, map = false;  // map: a debug view of the textures themselves, over the whole picture
         bool two_mips = false, hardware = false;
         int taps = 1, probes = 1;  // of the virtual texture, shaders/texture/vt_sample.glsl
@@ -65,7 +65,8 @@ class ResolvePass {
 
     explicit ResolvePass(gpu::Device& device) : device_(&device) {}
     Status make_fixed();
-    [[nodiscard]] Variant variant(const FrameSettings& settings, ResolvePart part, bool has_decals) const;
+    [[nodiscard]] Variant variant(const FrameSettings& settings, ResolvePart part, bool has_decals,
+                                  bool has_paints) const;
     // Those made for pages of another layout are dropped.
     Result<gpu::Pipeline*> pipeline(const Variant& variant, const LayerSet& layers,
                                     const PageTextures& textures);

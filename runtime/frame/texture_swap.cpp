@@ -46,6 +46,11 @@ void TextureSwap::on_dirt(std::span<const WorldRect> index, std::span<const Worl
     }
 }
 
+void TextureSwap::on_height_dirt(std::span<const WorldRect> rects) {
+    for (VirtualTexture* t : {shown_.get(), next_.get()})
+        if (t) t->on_height_dirt(rects);
+}
+
 bool TextureSwap::next_is_ready(const TextureView& view, bool seen) const {
     if (next_->place_of(PageId{}) < 0) return false;
     if (!seen || waited_frames_ >= kLongestSwap) return true;

@@ -151,15 +151,18 @@ CubicWeights catmull_rom(double f) {
              ((-1.5 * f + 2.0) * f + 0.5) * f, (0.5 * f - 0.5) * f * f}};
 }
 
-void compose_heights(const Document& document, const VirtualMap& map, int level, glm::ivec2 first,
-                     glm::ivec2 size, double* out_m) {
+double finest_height_spacing(const ProjectSettings& settings) {
+    return exact_spacing(settings.height_spacing_m / double(1 << settings.refine));
+}
+
+void compose_heights(const Document& document, int level, glm::ivec2 first, glm::ivec2 size, double* out_m) {
     const int refine = document.settings().refine;
     if (level < refine)
         interpolate_base(document, refine - level, first, size, out_m);
     else
         read_base(document, level - refine, first, size, out_m);
 
-    const double spacing = map.spacing_m(level);
+    const double spacing = finest_height_spacing(document.settings()) * double(int64_t(1) << level);
     const glm::dvec2 low(double(first.x) * spacing, double(first.y) * spacing);
     const WorldRect rect{low.x, low.y, low.x + (size.x - 1) * spacing, low.y + (size.y - 1) * spacing};
     thread_local std::vector<const Operator*> operators;
@@ -173,13 +176,11 @@ void compose_heights(const Document& document, const VirtualMap& map, int level,
         out_m[i] = std::isnan(out_m[i]) ? 0.0 : std::clamp(out_m[i], -kLimit_m, kLimit_m);
 }
 
-void compose_page_heights(const Document& document, const VirtualMap& map, const MapPage& page,
-                          float* out_m) {
+void compose_page_heights(const Document& document, const MapPage& page, float* out_m) {
     thread_local std::vector<double> heights_m;
     heights_m.resize(size_t(kHeightTexels) * kHeightTexels);
     const auto lock = document.read_lock();
-    compose_heights(document, map, page.level, first_sample(page), glm::ivec2(kHeightTexels),
-                    heights_m.data());
+    compose_heights(document, page.level, first_sample(page), glm::ivec2(kHeightTexels), heights_m.data());
     for (size_t i = 0; i < heights_m.size(); ++i) out_m[i] = static_cast<float>(heights_m[i]);
 }
 
@@ -224,7 +225,7 @@ void HeightMap::compose(const Document& document, const VirtualMap& map, const M
     heights_m.resize(size_t(window.area()));
     {
         const auto lock = document.read_lock();
-        compose_heights(document, map, page.level, first_sample(page) + glm::ivec2(window.x0, window.y0),
+        compose_heights(document, page.level, first_sample(page) + glm::ivec2(window.x0, window.y0),
                         {window.width(), window.height()}, heights_m.data());
     }
     derive_page(map, page.level, window, heights_m.data(), rect, out);

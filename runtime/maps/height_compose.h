@@ -8,17 +8,20 @@
 #include <glm/vec2.hpp>
 
 #include "runtime/maps/height_map.h"
+#include "runtime/store/project.h"
 
 namespace loam {
 
 // Heights in metres, row-major, at samples first + (i, j) of a level: base samples (bicubic where the level
 // is finer than the base, exactly through the samples), then operators. The caller holds the document's
 // ReadLock.
-void compose_heights(const Document& document, const VirtualMap& map, int level, glm::ivec2 first,
-                     glm::ivec2 size, double* out_m);
+void compose_heights(const Document& document, int level, glm::ivec2 first, glm::ivec2 size, double* out_m);
+
+// Metres between the samples of level 0; of level L times 2^L, the places exact multiples.
+[[nodiscard]] double finest_height_spacing(const ProjectSettings& settings);
 
 // The same of a whole page with its border, as HeightPage has them. Takes the ReadLock.
-void compose_page_heights(const Document& document, const VirtualMap& map, const MapPage& page, float* out_m);
+void compose_page_heights(const Document& document, const MapPage& page, float* out_m);
 
 // The heights that a page and its normals and occlusion are made from: the page's texels and kOcclusionRadius
 // more on every side, row 0 south. Kept beside a resident page, so that an edit evaluates only the heights

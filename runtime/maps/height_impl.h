@@ -21,7 +21,7 @@ class HeightQueryCache {
         float min_m, max_m;
     };
     // Composes what is absent. The pointer holds until the next call.
-    const float* page(const Document& document, const VirtualMap& map, const MapPage& page);
+    const float* page(const Document& document, const MapPage& page);
     // Between which heights the page's surface lies; need not be tight. `heights_m`: the page's, where they
     // are at hand.
     Bounds bounds(const Document& document, const VirtualMap& map, const MapPage& page,

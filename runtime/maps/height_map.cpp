@@ -18,7 +18,7 @@ VirtualMapDesc map_desc(const Document& document, int slot_count) {
     desc.payload_texels = kHeightPayload;
     desc.border_texels = kHeightBorder;
     desc.slot_count = slot_count;
-    desc.spacing_m = exact_spacing(settings.height_spacing_m / double(1 << settings.refine));
+    desc.spacing_m = finest_height_spacing(settings);
     desc.bounds = document.bounds();
     const double extent_m = std::max({desc.bounds.max_x, desc.bounds.max_y, desc.spacing_m});
     desc.level_count = level_count_for(extent_m, desc.spacing_m, kHeightPayload);

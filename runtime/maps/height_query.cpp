@@ -106,7 +106,7 @@ bool clip_to_map(glm::dvec2 o, glm::dvec2 d, glm::dvec2 size, double& t0, double
 
 }  // namespace
 
-const float* HeightQueryCache::page(const Document& document, const VirtualMap& map, const MapPage& page) {
+const float* HeightQueryCache::page(const Document& document, const MapPage& page) {
     if (const auto found = by_page_.find(page); found != by_page_.end()) {
         pages_.splice(pages_.begin(), pages_, found->second);
         return found->second->heights_m.data();
@@ -120,7 +120,7 @@ const float* HeightQueryCache::page(const Document& document, const VirtualMap& 
     }
     pages_.front().page = page;
     by_page_[page] = pages_.begin();
-    compose_page_heights(document, map, page, pages_.front().heights_m.data());
+    compose_page_heights(document, page, pages_.front().heights_m.data());
     return pages_.front().heights_m.data();
 }
 
@@ -136,7 +136,7 @@ HeightQueryCache::Bounds HeightQueryCache::bounds(const Document& document, cons
     auto lock = document.read_lock();
     if (heights_m || operators_touch()) {
         lock.unlock();
-        if (!heights_m) heights_m = this->page(document, map, page);
+        if (!heights_m) heights_m = this->page(document, page);
         const auto [low, high] = std::minmax_element(heights_m, heights_m + kHeightTexels * kHeightTexels);
         result = {*low, *high};
     } else {
@@ -194,7 +194,7 @@ const float* HeightMap::Impl::clean_heights(const MapPage& page) const {
 
 const float* HeightMap::Impl::finest_heights(const MapPage& page) {
     const float* heights_m = clean_heights(page);
-    return heights_m ? heights_m : cache.page(document, map, page);
+    return heights_m ? heights_m : cache.page(document, page);
 }
 
 double HeightMap::height_m(double x_m, double y_m) {

@@ -88,7 +88,7 @@ std::vector<VirtualMap::Work> HeightMap::Impl::compose_planned(uint64_t frame, i
         Patch& patch = patches[i];
         patch.heights_m.resize(size_t(patch.rect.area()));
         const auto lock = document.read_lock();
-        compose_heights(document, map, patch.level, {patch.rect.x0, patch.rect.y0},
+        compose_heights(document, patch.level, {patch.rect.x0, patch.rect.y0},
                         {patch.rect.width(), patch.rect.height()}, patch.heights_m.data());
     });
     run(work.size(), texels, [&](size_t i) {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "runtime/base/check.h"
 #include "runtime/document/document.h"
@@ -105,31 +104,8 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
         composer->encode_[mip] = std::move(*encode);
     }
     if (decals) {
-        constexpr VkColorComponentFlags kRg = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT;
-        constexpr VkColorComponentFlags kRgb = kRg | VK_COLOR_COMPONENT_B_BIT;
-        const size_t targets = size_t(textures.scratch_layers);
-        const auto decal = [&](const char* name, const char* fragment, bool channels) {
-            std::vector<VkColorComponentFlags> masks(targets, kRgb);
-            if (!channels) masks[2] = kRg;
-            if (!channels && targets > 3) masks[3] = 0;
-            return gpu::Pipeline::create(
-                device, gpu::GraphicsDesc{.name = name,
-                                          .vertex_shader = "texture/decal.vert",
-                                          .fragment_shader = fragment,
-                                          .bindings = {gpu::storage_buffer(0)},
-                                          .constants = {{31, textures.placement}},
-                                          .color_formats = std::vector(targets, VK_FORMAT_R8G8B8A8_UNORM),
-                                          .blends = std::vector(targets, gpu::Blend::alpha),
-                                          .write_masks = masks,
-                                          .stencil = {}});
-        };
-        auto crater = decal("crater decal", "texture/decal_crater.frag", true);
-        if (!crater.ok()) return crater.error();
-        composer->crater_ = std::move(*crater);
-        auto footprint = decal("footprint decal", "texture/decal_footprint.frag", false);
-        if (!footprint.ok()) return footprint.error();
-        composer->footprint_ = std::move(*footprint);
-        composer->decals_ = true;
+        composer->decals_.emplace(device, textures);
+        LOAM_TRY(composer->decals_->warm_up(document, layers));
     }
     return composer;
 }
@@ -276,7 +252,7 @@ Status Composer::cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::v
                            PageAtlas& atlas) {
     const Work work = upload(ring, batch);
     cmd_materials(ring, commands, batch, work);
-    if (decals_) cmd_decals(ring, commands, batch);
+    if (decals_) LOAM_TRY(cmd_decals(ring, commands, batch));
     cmd_encode(commands, work);
     cmd_copy(commands, batch, atlas);
     return {};
@@ -352,29 +328,15 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
     }
 }
 
-void Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch) {
+Status Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch) {
     DecalList list;
     {
         const auto lock = document_.read_lock();
         for (const Placed& placed : batch)
-            add_decals(document_, layout_, placed.job.page, placed.job.rect, placed.rect.scratch_min, list);
+            add_decals(document_, layers_, layout_, placed.job.page, placed.job.rect, placed.rect.scratch_min,
+                       list);
     }
-    if (list.instances.empty()) return;
-    const uint64_t bytes = list.instances.size() * sizeof(shared::DecalInstance);
-    const gpu::UploadSlice slice = ring.upload(bytes);
-    std::memcpy(slice.data, list.instances.data(), bytes);
-    auto pass = commands.pass("texture decals", {{scratch_, Access::color_target}});
-    std::vector<gpu::ColorTarget> targets;
-    for (uint32_t layer = 0; layer < scratch_.layer_count(); ++layer)
-        targets.push_back({scratch_.layer_view(0, layer)});
-    commands.begin_rendering({kScratchWidth, kScratchHeight}, targets);
-    commands.set_viewport(0, 0, kScratchWidth, kScratchHeight);
-    for (const DecalRun& run : list.runs) {
-        commands.bind(run.kind == DecalKind::crater ? crater_ : footprint_,
-                      {{0, *slice.buffer, slice.offset, bytes}});
-        commands.draw(6, run.count, 0, run.first);
-    }
-    commands.end_rendering();
+    return decals_->cmd_record(ring, commands, list, layers_, scratch_);
 }
 
 void Composer::cmd_encode(gpu::Commands& commands, const Work& work) {

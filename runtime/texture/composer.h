@@ -10,11 +10,12 @@
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "runtime/maps/index_map.h"
-#include "runtime/texture/decals.h"
+#include "runtime/texture/decal_passes.h"
 #include "runtime/texture/layer_set.h"
 #include "runtime/texture/virtual_texture.h"
 #include "shaders/texture/compose_io.h"
@@ -63,7 +64,7 @@ class Composer {
     [[nodiscard]] Work upload(gpu::FrameRing& ring, std::span<Placed> batch);
     void cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch,
                        const Work& work);
-    void cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch);
+    Status cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch);
     void cmd_encode(gpu::Commands& commands, const Work& work);
     void cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas);
 
@@ -78,8 +79,8 @@ class Composer {
     gpu::Sampler nearest_;
     // By one layer only (1) and transitions (2): a rectangle runs the one for what is in it.
     std::array<gpu::Pipeline, 4> materials_;
-    gpu::Pipeline encode_[2], crater_, footprint_;
-    bool decals_ = false;
+    gpu::Pipeline encode_[2];
+    std::optional<DecalPasses> decals_;
     std::array<bool, 3> features_{};  // tile hiding, distortion, transitions: of the pipelines
 };
 

@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
+#include <type_traits>
 
 #include "runtime/document/document.h"
+#include "runtime/texture/paint_decals.h"
 #include "shaders/document/crater_math.h"
 #include "shaders/document/footprint_math.h"
 
@@ -11,8 +14,16 @@ namespace loam {
 
 namespace {
 
-// What both paths take from an operator; the place stays in doubles.
-struct DecalSource {
+int clamped_int(double v) {
+    return int(std::clamp(v, -1.0e8, 1.0e8));
+}
+
+WorldRect square_around(double x_m, double y_m, double half_m) {
+    return {x_m - half_m, y_m - half_m, x_m + half_m, y_m + half_m};
+}
+
+// What both paths take from a crater or a footprint; the place stays in doubles.
+struct MarkSource {
     DecalKind kind = DecalKind::crater;
     double x_m = 0, y_m = 0;
     double size_m = 0;   // see decal_fade
@@ -21,18 +32,18 @@ struct DecalSource {
     uint32_t seed = 0, foot = 0;
 };
 
-DecalSource source_of(const Crater& c) {
-    return {
-        .kind = DecalKind::crater,
-        .x_m = c.x_m,
-        .y_m = c.y_m,
-        .size_m = c.radius_m * 2,
-        .reach_m = c.radius_m * double(kCraterMarkReach),
-        .shape = {float(c.radius_m), float(c.depth_m > 0 ? c.depth_m : c.radius_m * 0.4), float(c.heat), 0},
-        .seed = c.seed};
+MarkSource source_of(const Crater& c) {
+    return {.kind = DecalKind::crater,
+            .x_m = c.x_m,
+            .y_m = c.y_m,
+            .size_m = c.radius_m * 2,
+            .reach_m = c.radius_m * double(kCraterMarkReach),
+            .shape = {float(c.radius_m), float(c.depth_m > 0 ? c.depth_m : c.radius_m * 0.4),
+                      float(c.heat), 0},
+            .seed = c.seed};
 }
 
-DecalSource source_of(const Footprint& f) {
+MarkSource source_of(const Footprint& f) {
     return {.kind = DecalKind::footprint,
             .x_m = f.x_m,
             .y_m = f.y_m,
@@ -44,17 +55,176 @@ DecalSource source_of(const Footprint& f) {
             .foot = uint32_t(f.foot)};
 }
 
-DecalSource source_of(const Operator& op) {
-    return std::visit([](const auto& shape) { return source_of(shape); }, op.shape);
+DecalPass pass_of(const Operator& op) {
+    return std::holds_alternative<SplineDecal>(op.shape)   ? DecalPass::splines
+           : std::holds_alternative<VolumeDecal>(op.shape) ? DecalPass::volumes
+                                                           : DecalPass::terrain;
+}
+
+// One rectangle of a page; a call a kind of operator.
+struct PageDecals {
+    const Document& document;
+    const LayerSet& layers;
+    const TextureLayout& layout;
+    const PageId& page;
+    const TexelRect& rect;
+    glm::ivec2 shift;  // page texel to scratch
+    DecalList& list;
+    WorldRect square = layout.square(page);
+    double texel_m = layout.texel_m(page);
+
+    [[nodiscard]] glm::dvec3 origin(double z_m) const { return {square.min_x, square.min_y, z_m}; }
+    [[nodiscard]] bool shown(double size_m) const {
+        return shared::decal_fade(float(size_m), float(texel_m)) > 0;
+    }
+    [[nodiscard]] TexelRect covered(const WorldRect& bounds) const {
+        return intersected(page_texels(layout, page, bounds), rect);
+    }
+
+    void add_to_run(DecalPass pass, DecalKind kind, bool even, size_t index) const {
+        auto& runs = list.runs[size_t(pass)];
+        if (runs.empty() || runs.back().kind != kind || runs.back().even != even ||
+            runs.back().first + runs.back().count != index)
+            runs.push_back({kind, even, uint32_t(index), 0});
+        ++runs.back().count;
+    }
+
+    void mark(const MarkSource& source, const WorldRect& bounds) const {
+        shared::DecalInstance instance{};
+        instance.fade = shared::decal_fade(float(source.size_m), float(texel_m));
+        const TexelRect quad = covered(bounds);
+        if (instance.fade <= 0 || quad.empty()) return;
+        instance.quad_min = glm::ivec2(quad.x0, quad.y0) + shift;
+        instance.quad_size = {quad.width(), quad.height()};
+        instance.page_shift = shift;
+        instance.center_texel = {float((source.x_m - square.min_x) / texel_m + kPageBorder),
+                                 float((source.y_m - square.min_y) / texel_m + kPageBorder)};
+        instance.texel_m = float(texel_m);
+        instance.shape = source.shape;
+        instance.seed = source.seed;
+        instance.foot = source.foot;
+        add_to_run(DecalPass::terrain, source.kind, true, list.marks.size());
+        list.marks.push_back(instance);
+    }
+
+    shared::PaintInstance& paint(DecalPass pass, DecalKind kind, const DecalMaterial& material,
+                                 const TexelRect& quad) const {
+        add_to_run(pass, kind, even_channels(material), list.paints.size());
+        shared::PaintInstance& instance = list.paints.emplace_back();
+        instance.quad_min = glm::ivec2(quad.x0, quad.y0) + shift;
+        instance.quad_size = {quad.width(), quad.height()};
+        instance.page_shift = shift;
+        instance.texel_m = float(texel_m);
+        return instance;
+    }
+
+    void operator()(const Crater& c) const {
+        mark(source_of(c), square_around(c.x_m, c.y_m, source_of(c).reach_m));
+    }
+    void operator()(const Footprint& f) const {
+        mark(source_of(f), square_around(f.x_m, f.y_m, source_of(f).reach_m));
+    }
+    void operator()(const TerrainDecal& decal, const WorldRect& bounds) const {
+        const TexelRect quad = covered(bounds);
+        if (quad.empty() || !shown(size_m(decal))) return;
+        paint(DecalPass::terrain, DecalKind::terrain, decal.material, quad).decal =
+            paint_of(document, layers, decal, origin(0));
+    }
+    void operator()(const SplineDecal& spline) const {
+        if (!shown(size_m(spline))) return;
+        for (const SplinePiece& piece : spline.path->pieces()) {
+            const TexelRect quad = covered(piece.line.grown(spline.path->half_width_m()));
+            if (quad.empty()) continue;
+            paint(DecalPass::splines, DecalKind::spline, spline.material, quad).decal =
+                paint_of(document, layers, spline, piece, origin(0), list.segments);
+        }
+    }
+    void operator()(const VolumeDecal& volume, const WorldRect& bounds) const {
+        const TexelRect quad = covered(bounds);
+        if (quad.empty() || !shown(size_m(volume))) return;
+        shared::PaintInstance& instance = paint(DecalPass::volumes, DecalKind::volume, volume.material, quad);
+        instance.decal = paint_of(document, layers, volume, origin(volume.center_m.z));
+        add_ground(document, {square.min_x, square.min_y}, texel_m, quad, volume.center_m.z, instance,
+                   list.heights_m);
+    }
+};
+
+// The decals of a picture; a call a kind of operator.
+struct PictureDecals {
+    const Document& document;
+    const LayerSet& layers;
+    const DirectDecalView& view;
+    DirectDecals& out;
+    double texel_a_metre = 0;  // the finest footprint at a metre's distance
+
+    [[nodiscard]] bool shown(double size_m, const WorldRect& bounds) const {
+        return size_m * 2 > bounds.distance(view.camera_m.x, view.camera_m.y) * texel_a_metre;
+    }
+    [[nodiscard]] glm::vec2 relative(glm::dvec2 at_m) const {
+        return glm::vec2(at_m - glm::dvec2(view.camera_m));
+    }
+
+    void mark(const MarkSource& source, uint32_t kind) const {
+        if (!shown(source.size_m, square_around(source.x_m, source.y_m, source.reach_m))) return;
+        out.decals.push_back({.center_rel_m = relative({source.x_m, source.y_m}),
+                              .reach_m = float(source.reach_m),
+                              .size_m = float(source.size_m),
+                              .shape = source.shape,
+                              .seed = source.seed,
+                              .foot = source.foot,
+                              .kind = kind,
+                              .paint = 0});
+    }
+    void paint(uint32_t kind, const shared::PaintDecal& decal, const WorldRect& bounds) const {
+        out.decals.push_back({.center_rel_m = relative(bounds.center()),
+                              .reach_m = float(std::hypot(bounds.width(), bounds.height()) * 0.5),
+                              .size_m = 0,
+                              .shape = {},
+                              .seed = 0,
+                              .foot = 0,
+                              .kind = kDecalPaint + kind,
+                              .paint = uint32_t(out.paints.size())});
+        out.paints.push_back(decal);
+    }
+
+    void operator()(const Crater& c) const { mark(source_of(c), kDecalCrater); }
+    void operator()(const Footprint& f) const { mark(source_of(f), kDecalFootprint); }
+    void operator()(const TerrainDecal& decal, const WorldRect& bounds) const {
+        if (shown(size_m(decal), bounds))
+            paint(kPaintTerrain, paint_of(document, layers, decal, view.camera_m), bounds);
+    }
+    void operator()(const VolumeDecal& volume, const WorldRect& bounds) const {
+        if (shown(size_m(volume), bounds))
+            paint(kPaintVolume, paint_of(document, layers, volume, view.camera_m), bounds);
+    }
+    void operator()(const SplineDecal& spline) const {
+        for (const SplinePiece& piece : spline.path->pieces()) {
+            const WorldRect bounds = piece.line.grown(spline.path->half_width_m());
+            const bool in_view = std::any_of(view.ground.begin(), view.ground.end(),
+                                             [&](const WorldRect& rect) { return rect.overlaps(bounds); });
+            if (in_view && shown(size_m(spline), bounds))
+                paint(kPaintSpline, paint_of(document, layers, spline, piece, view.camera_m, out.segments),
+                      bounds);
+        }
+    }
+};
+
+// Visits with the operator's bounds where the kind asks for them.
+template <typename Kinds>
+void visit_decal(const Kinds& kinds, const Operator& op) {
+    std::visit(
+        [&](const auto& shape) {
+            if constexpr (std::is_invocable_v<const Kinds&, decltype(shape), const WorldRect&>)
+                kinds(shape, op.texture_bounds());
+            else
+                kinds(shape);
+        },
+        op.shape);
 }
 
 // A pixel's smallest footprint is that of level ground seen from straight above; slopes and the picture's
 // corners make it smaller still, for which this share is left.
 constexpr double kFootprintMargin = 0.125;
-
-int clamped_int(double v) {
-    return int(std::clamp(v, -1.0e8, 1.0e8));
-}
 
 }  // namespace
 
@@ -69,8 +239,8 @@ TexelRect page_texels(const TextureLayout& layout, const PageId& page, const Wor
             clamped_int(std::ceil(texel(world.max_y, square.min_y)) + 1)};
 }
 
-void add_decals(const Document& document, const TextureLayout& layout, const PageId& page,
-                const TexelRect& rect, glm::ivec2 scratch_min, DecalList& list) {
+void add_decals(const Document& document, const LayerSet& layers, const TextureLayout& layout,
+                const PageId& page, const TexelRect& rect, glm::ivec2 scratch_min, DecalList& list) {
     const WorldRect square = layout.square(page);
     const double texel_m = layout.texel_m(page);
     const WorldRect covered{
@@ -78,31 +248,12 @@ void add_decals(const Document& document, const TextureLayout& layout, const Pag
         square.min_x + (rect.x1 - kPageBorder) * texel_m, square.min_y + (rect.y1 - kPageBorder) * texel_m};
     std::vector<const Operator*> operators;
     document.operators_over_texture(covered, operators);
-    for (const Operator* op : operators) {
-        const DecalSource source = source_of(*op);
-        shared::DecalInstance instance{};
-        instance.fade = shared::decal_fade(float(source.size_m), float(texel_m));
-        if (instance.fade <= 0) continue;
-        const TexelRect quad = intersected(page_texels(layout, page, op->texture_bounds()), rect);
-        if (quad.empty()) continue;
-        const glm::ivec2 shift = scratch_min - glm::ivec2(rect.x0, rect.y0);
-        instance.quad_min = glm::ivec2(quad.x0, quad.y0) + shift;
-        instance.quad_size = {quad.width(), quad.height()};
-        instance.page_shift = shift;
-        instance.center_texel = {float((source.x_m - square.min_x) / texel_m + kPageBorder),
-                                 float((source.y_m - square.min_y) / texel_m + kPageBorder)};
-        instance.texel_m = float(texel_m);
-        instance.shape = source.shape;
-        instance.seed = source.seed;
-        instance.foot = source.foot;
-        if (list.runs.empty() || list.runs.back().kind != source.kind)
-            list.runs.push_back({source.kind, uint32_t(list.instances.size()), 0});
-        list.instances.push_back(instance);
-        ++list.runs.back().count;
-    }
+    const PageDecals decals{document, layers, layout, page, rect, scratch_min - glm::ivec2(rect.x0, rect.y0),
+                            list};
+    for (const Operator* op : operators) visit_decal(decals, *op);
 }
 
-std::vector<shared::DirectDecal> direct_decals(const Document& document, const DirectDecalView& view) {
+DirectDecals direct_decals(const Document& document, const LayerSet& layers, const DirectDecalView& view) {
     const auto lock = document.read_lock();
     std::vector<const Operator*> found, here;
     for (const WorldRect& rect : view.ground) {
@@ -110,26 +261,14 @@ std::vector<shared::DirectDecal> direct_decals(const Document& document, const D
         found.insert(found.end(), here.begin(), here.end());
     }
     std::sort(found.begin(), found.end(), [](const Operator* a, const Operator* b) {
-        return a->order != b->order ? a->order < b->order : a->id < b->id;
+        return std::tuple(pass_of(*a), a->order, a->id) < std::tuple(pass_of(*b), b->order, b->id);
     });
     found.erase(std::unique(found.begin(), found.end()), found.end());
-    const double texel_a_metre = kFootprintMargin / view.pixels_per_radian * std::exp2(view.footprint_bias);
-    std::vector<shared::DirectDecal> decals;
-    for (const Operator* op : found) {
-        const DecalSource source = source_of(*op);
-        const double near_m = op->texture_bounds().distance(view.camera_m.x, view.camera_m.y);
-        if (source.size_m * 2 <= near_m * texel_a_metre) continue;  // decal_fade is 0
-        decals.push_back(
-            {.center_rel_m = {float(source.x_m - view.camera_m.x), float(source.y_m - view.camera_m.y)},
-             .reach_m = float(source.reach_m),
-             .size_m = float(source.size_m),
-             .shape = source.shape,
-             .seed = source.seed,
-             .foot = source.foot,
-             .kind = source.kind == DecalKind::crater ? kDecalCrater : kDecalFootprint,
-             .unused = 0});
-    }
-    return decals;
+    DirectDecals out;
+    const PictureDecals decals{document, layers, view, out,
+                               kFootprintMargin / view.pixels_per_radian * std::exp2(view.footprint_bias)};
+    for (const Operator* op : found) visit_decal(decals, *op);
+    return out;
 }
 
 }  // namespace loam

@@ -96,6 +96,8 @@ class VirtualTexture {
     void on_index_dirt(std::span<const WorldRect> rects);
     // After LayerSet::take_settings: every page is composed again.
     Status take_settings();
+    // Height dirt as the document tells it: volume decals lie on the ground.
+    void on_height_dirt(std::span<const WorldRect> rects);
     // Pages wanted beside the feedback's, until the next call (tests, benches).
     void request_pages(std::span<const PageId> pages);
     // Sectors farther than this from every eye are not live.

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "runtime/maps/base_window.h"
+#include "runtime/texture/paint_decals.h"
 #include "runtime/texture/virtual_texture_impl.h"
 
 namespace loam {
@@ -444,6 +446,44 @@ void VirtualTexture::on_index_dirt(std::span<const WorldRect> rects) {
     for (const WorldRect& rect : rects)
         if (!rect.empty()) grown.push_back(rect.grown(reach_m));
     on_dirt(grown);
+}
+
+// Texels whose ground changed, where a volume lies on it. A page of coarser texels looks at coarser samples,
+// farther away.
+void VirtualTexture::on_height_dirt(std::span<const WorldRect> rects) {
+    Impl& t = *impl_;
+    const auto reach_m = [&](const PageId& page) {
+        return ground_reach_m(t.document, t.layout.texel_m(page));
+    };
+    std::vector<std::pair<WorldRect, WorldRect>> volumes;  // what changed, and the volume
+    std::vector<const Operator*> operators;
+    {
+        const auto lock = t.document.read_lock();
+        for (const WorldRect& rect : rects) {
+            if (rect.empty()) continue;
+            const WorldRect changed = extended_beyond_edges(rect, t.document.bounds());
+            t.document.operators_over_texture(changed.grown(reach_m(PageId{})), operators);
+            for (const Operator* op : operators)
+                if (std::holds_alternative<VolumeDecal>(op->shape))
+                    volumes.emplace_back(changed, op->texture_bounds());
+        }
+    }
+    if (volumes.empty()) return;
+    for (int i = 0; i < t.pool.place_count(); ++i) {
+        const PagePool::Place& place = t.pool.place(i);
+        if (place.state == PagePool::State::free) continue;
+        TexelRect dirty;
+        for (const auto& [changed, volume] : volumes) {
+            const WorldRect seen = intersected(changed.grown(reach_m(place.page)), volume);
+            if (!seen.empty())
+                dirty = united(dirty, aligned_out(page_texels(t.layout, place.page, seen), 8, kPageTexels));
+        }
+        if (dirty.empty()) continue;
+        ++t.counted.pages_dirtied;
+        t.pool.mark_dirty(i, dirty);
+        t.facts.dirtied(i, t.frame);
+    }
+    t.gather_dirty();
 }
 
 void VirtualTexture::request_pages(std::span<const PageId> pages) {

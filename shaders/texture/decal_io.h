@@ -25,12 +25,13 @@ struct DirectDecal {
     vec4 shape;         // as DecalInstance's
     uint seed;
     uint foot;
-    uint kind;          // kDecalCrater or kDecalFootprint
-    uint unused;
+    uint kind;          // kDecalCrater …
+    uint paint;         // kDecalPaint and on: which PaintDecal (paint_io.h); nothing else of this struct but place and reach counts
 };
 
 #define kDecalCrater 0u
 #define kDecalFootprint 1u
+#define kDecalPaint 2u  // and kPaintTerrain, kPaintSpline or kPaintVolume
 
 // Below half a texel a decal is gone, from one texel on it is whole: a function of the texel's size alone, so that
 // neighbouring pages of a level agree.

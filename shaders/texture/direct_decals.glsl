@@ -5,18 +5,36 @@
 // decal with a cheap test, and only then are decals evaluated, one a lane: the price is the list once, plus the most decals over
 // one of eight neighbouring pixels, instead of every decal in full.
 //
-// Slot DIRECT_FIRST_SLOT + 8: storage buffer of DirectDecal, as long as its bound range (runtime/texture/decals.h). Specialisation
-// constant 22: 1 where there are any.
+// Slots DIRECT_FIRST_SLOT + 8, 10, 11: storage buffers of DirectDecal, as long as its bound range, PaintDecal and PaintSegment
+// (runtime/texture/decals.h). Specialisation constants: 22: 1 where there are any decals, 23: 1 where any lays a material.
 #ifndef LOAM_TEXTURE_DIRECT_DECALS_GLSL
 #define LOAM_TEXTURE_DIRECT_DECALS_GLSL
 #include "shaders/texture/decal_shade.glsl"
 #include "shaders/texture/material.glsl"
+#include "shaders/texture/paint_io.h"
 
 layout(constant_id = 22) const bool kDirectDecals = false;
+layout(constant_id = 23) const bool kDirectPaint = false;
 layout(binding = DIRECT_FIRST_SLOT + 8, scalar) readonly buffer DirectDecals { DirectDecal direct_decals[]; };
+layout(binding = DIRECT_FIRST_SLOT + 10, scalar) readonly buffer DirectPaints { PaintDecal direct_paints[]; };
+layout(binding = DIRECT_FIRST_SLOT + 11, scalar) readonly buffer DirectSegments { PaintSegment direct_segments[]; };
 
-MaterialSample with_decals(MaterialSample m, vec2 rel_m, float log2_footprint) {
+#define PAINT_SEGMENT(i) direct_segments[i]
+#include "shaders/texture/paint_shade.glsl"
+
+// As composition blends it: runtime/texture/decal_passes.cpp.
+void blend_paint(PaintDecal decal, PaintPlace place, inout vec3 root, inout vec3 surface, inout vec2 metal) {
+    PaintShade shade = paint_material(decal, place);
+    root = mix(root, shade.root, shade.cover * decal.albedo_share);
+    surface = mix(surface, vec3(shade.gloss, shade.normal.x, shade.occlusion),
+                  shade.cover * vec3(decal.gloss_share, decal.normal_share, decal.occlusion_share));
+    metal = mix(metal, vec2(shade.metalness, shade.normal.y), shade.cover * vec2(decal.metal_share, decal.normal_share));
+}
+
+// at_rel_m: camera-relative; ground: the height field's normal there.
+MaterialSample with_decals(MaterialSample m, vec3 at_rel_m, vec3 ground, float log2_footprint) {
     if (!kDirectDecals) return m;
+    vec2 rel_m = at_rel_m.xy;
     float texel_m = exp2(log2_footprint);
     vec3 root = sqrt(clamp(m.albedo, 0.0, 1.0));
     vec3 surface = vec3(m.gloss, page_encode_normal(m.normal.x), m.occlusion);
@@ -30,6 +48,19 @@ MaterialSample with_decals(MaterialSample m, vec2 rel_m, float log2_footprint) {
         }
         if (next >= count) break;
         DirectDecal decal = direct_decals[next];
+        if (kDirectPaint && decal.kind >= kDecalPaint) {
+            PaintDecal paint = direct_paints[decal.paint];
+            uint kind = decal.kind - kDecalPaint;
+            PaintPlace place;
+            if (kind == kPaintTerrain)
+                place = paint_terrain(paint, rel_m, texel_m);
+            else if (kind == kPaintSpline)
+                place = paint_spline(paint, rel_m, texel_m);
+            else
+                place = paint_volume(paint, at_rel_m, ground, texel_m);
+            blend_paint(paint, place, root, surface, metal);
+            continue;
+        }
         DecalInstance instance;
         instance.texel_m = texel_m;
         instance.fade = decal_fade(decal.size_m, texel_m);

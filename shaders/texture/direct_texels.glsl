@@ -7,7 +7,9 @@
 #include "shaders/texture/direct.glsl"
 #include "shaders/texture/direct_decals.glsl"
 
-MaterialSample direct_texels(vec2 rel_m, float log2_footprint) {
+// at_rel_m: camera-relative; ground: the normal there. Between texels the ground is its tangent plane.
+MaterialSample direct_texels(vec3 at_rel_m, vec3 ground, float log2_footprint) {
+    vec2 rel_m = at_rel_m.xy, slope = -ground.xy / ground.z;
     const float log2_root = log2(64.0 / float(kPagePayload)); // texels of a page that covers a sector
     float wanted = log2_footprint - log2_root;
     float mip = floor(wanted);
@@ -30,7 +32,8 @@ MaterialSample direct_texels(vec2 rel_m, float log2_footprint) {
         vec3 albedo = vec3(0);
         for (int k = 0; k < count; ++k) {
             vec2 fine_m = center_m + (second ? texel_m * (vec2(k & 1, k >> 1) - 0.5) : vec2(0));
-            MaterialSample m = with_decals(direct_material(fine_m, log2_texel), fine_m, log2_texel);
+            MaterialSample m = with_decals(direct_material(fine_m, log2_texel),
+                                           vec3(fine_m, at_rel_m.z + dot(slope, fine_m - rel_m)), ground, log2_texel);
             float part = 1.0 / float(count);
             albedo += clamp(m.albedo, 0.0, 1.0) * part; // a mip of roots averages the squares
             surface += vec3(m.gloss, page_encode_normal(m.normal.x), m.occlusion) * (part * weight);

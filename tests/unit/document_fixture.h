@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "decal_fixture.h"
 #include "runtime/document/document.h"
 
 namespace loam::test {
@@ -75,7 +76,7 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
         return list;
     };
     Command command;
-    switch (whole(0, 9)) {
+    switch (whole(0, 12)) {
         case 0:
         case 1:
         case 2: {
@@ -122,6 +123,16 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
         }
         case 8:
             command.body = SetOperatorCommand{random() % (most_id + 1), whole(0, 1) == 1};
+            break;
+        case 9:
+            command.body = AddOperatorCommand{random_decal(random, place(), uniform(0.5, 20))};
+            break;
+        case 10:
+            command.body = EditOperatorCommand{random() % (most_id + 1),
+                                               random_decal(random, place(), uniform(0.5, 20))};
+            break;
+        case 11:
+            command.body = ReorderCommand{random() % (most_id + 1), uint64_t(whole(0, 40))};
             break;
         default:
             command.body = RemoveOperatorCommand{random() % (most_id + 1)};

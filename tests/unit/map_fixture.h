@@ -12,6 +12,7 @@
 
 #include <gtest/gtest.h>
 
+#include "decal_fixture.h"
 #include "runtime/document/document.h"
 #include "runtime/maps/virtual_map.h"
 
@@ -105,7 +106,7 @@ class MapFixture {
     }
     Dirt random_command() {
         const glm::dvec2 at = place();
-        switch (uniform(0, 7)) {
+        switch (uniform(0, 9)) {
             case 0:
                 return crater(at.x, at.y, real(0.5, 25));
             case 1: {
@@ -142,6 +143,15 @@ class MapFixture {
                 paint.strength = 0.7;
                 paint.seed = uint32_t(random_());
                 return apply(paint);
+            }
+            case 6:
+                return apply(AddOperatorCommand{random_decal(random_, at, real(0.5, 20))});
+            case 7: {
+                const auto operators = document_->operators();
+                if (operators.empty()) break;
+                const uint64_t id = operators[size_t(uniform(0, int(operators.size()) - 1))].id;
+                if (uniform(0, 1)) return apply(ReorderCommand{id, uint64_t(uniform(0, 40))});
+                return apply(EditOperatorCommand{id, random_decal(random_, at, real(0.5, 20))});
             }
             default:
                 break;

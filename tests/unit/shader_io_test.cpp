@@ -15,6 +15,7 @@
 #include "shaders/frame/tiles_io.h"
 #include "shaders/geometry/geometry_io.h"
 #include "shaders/texture/compose_io.h"
+#include "shaders/texture/paint_io.h"
 #include "shaders/texture/texture_io.h"
 
 namespace {
@@ -124,6 +125,33 @@ TEST(ShaderIo, DebugFacts) {
                    AT(VtPlaceFacts, cost), AT(VtPlaceFacts, decals)});
     expect_layout("VtImageSquare", sizeof(shared::VtImageSquare),
                   {AT(VtImageSquare, x), AT(VtImageSquare, y), AT(VtImageSquare, size), AT(VtImageSquare, id)});
+}
+
+TEST(ShaderIo, PaintDecal) {
+    expect_layout("PaintDecal", sizeof(shared::PaintDecal),
+                  {AT(PaintDecal, center_m), AT(PaintDecal, axis_x), AT(PaintDecal, axis_y), AT(PaintDecal, axis_z),
+                   AT(PaintDecal, half_m), AT(PaintDecal, phase), AT(PaintDecal, tiles_per_m), AT(PaintDecal, lod_bias),
+                   AT(PaintDecal, layer), AT(PaintDecal, colour), AT(PaintDecal, gloss), AT(PaintDecal, metalness),
+                   AT(PaintDecal, opacity), AT(PaintDecal, edge), AT(PaintDecal, rough), AT(PaintDecal, seed),
+                   AT(PaintDecal, ellipse), AT(PaintDecal, albedo_share), AT(PaintDecal, normal_share),
+                   AT(PaintDecal, gloss_share), AT(PaintDecal, metal_share), AT(PaintDecal, occlusion_share),
+                   AT(PaintDecal, first_segment), AT(PaintDecal, segment_count), AT(PaintDecal, own_first),
+                   AT(PaintDecal, own_count), AT(PaintDecal, length_m), AT(PaintDecal, fade_m)});
+}
+
+TEST(ShaderIo, PaintSegment) {
+    expect_layout("PaintSegment", sizeof(shared::PaintSegment),
+                  {AT(PaintSegment, from_m), AT(PaintSegment, direction), AT(PaintSegment, length_m),
+                   AT(PaintSegment, half_from_m), AT(PaintSegment, half_to_m), AT(PaintSegment, start_m),
+                   AT(PaintSegment, phase)});
+}
+
+TEST(ShaderIo, PaintInstance) {
+    expect_layout("PaintInstance", sizeof(shared::PaintInstance),
+                  {AT(PaintInstance, quad_min), AT(PaintInstance, quad_size), AT(PaintInstance, page_shift),
+                   AT(PaintInstance, texel_m), AT(PaintInstance, grid_scale), AT(PaintInstance, grid_origin),
+                   AT(PaintInstance, grid_min), AT(PaintInstance, grid_first), AT(PaintInstance, grid_width),
+                   AT(PaintInstance, grid_spacing_m), AT(PaintInstance, decal)});
 }
 
 TEST(ShaderIo, ADifferentLayoutIsFound) {

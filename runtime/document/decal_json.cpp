@@ -1,0 +1,156 @@
+#include "runtime/document/decal_json.h"
+
+namespace loam {
+
+namespace {
+
+template <typename Vector>
+Vector read_vector(const Fields& fields, const Json& list, const char* key) {
+    constexpr int kCount = Vector::length();
+    if (!list.is_array() || list.size() != size_t(kCount))
+        refuse("{}: \"{}\" must be {} numbers", fields.place(), key, kCount);
+    Vector v;
+    for (int i = 0; i < kCount; ++i) v[i] = fields.number_of(list[size_t(i)], key);
+    return v;
+}
+
+template <typename Vector>
+Vector read_vector(Fields& fields, const char* key, const Vector& otherwise) {
+    const Json* list = fields.find(key);
+    return list ? read_vector<Vector>(fields, *list, key) : otherwise;
+}
+
+template <typename Vector>
+Json vector_json(const Vector& v) {
+    Json list = Json::array();
+    for (int i = 0; i < Vector::length(); ++i) list.push_back(v[i]);
+    return list;
+}
+
+// Name and member of each channel.
+constexpr std::pair<const char*, double DecalChannels::*> kChannels[] = {
+    {"albedo", &DecalChannels::albedo},
+    {"normal", &DecalChannels::normal},
+    {"gloss", &DecalChannels::gloss},
+    {"metalness", &DecalChannels::metalness},
+    {"occlusion", &DecalChannels::occlusion}};
+
+DecalMaterial read_material(Fields& fields) {
+    DecalMaterial m;
+    if (const Json* layer = fields.find("layer")) m.layer = fields.text_of(*layer, "layer");
+    m.colour = read_vector(fields, "colour", m.colour);
+    m.gloss = fields.number("gloss", m.gloss);
+    m.metalness = fields.number("metalness", m.metalness);
+    m.tile_m = fields.number("tile_m", m.tile_m);
+    m.opacity = fields.number("opacity", m.opacity);
+    m.edge = fields.number("edge", m.edge);
+    m.rough = fields.number("rough", m.rough);
+    m.seed = uint32_t(fields.whole("seed", kMaxU32, 0));
+    if (const Json* channels = fields.find("channels")) {
+        Fields of(*channels, fields.place() + ": channels");
+        for (const auto& [name, member] : kChannels) m.channels.*member = of.number(name, 1);
+        of.finish();
+    }
+    return m;
+}
+
+void write_material(Json& json, const DecalMaterial& m) {
+    json["layer"] = m.layer;
+    json["colour"] = vector_json(m.colour);
+    json["gloss"] = m.gloss;
+    json["metalness"] = m.metalness;
+    json["tile_m"] = m.tile_m;
+    json["opacity"] = m.opacity;
+    json["edge"] = m.edge;
+    json["rough"] = m.rough;
+    json["seed"] = m.seed;
+    for (const auto& [name, member] : kChannels) json["channels"][name] = m.channels.*member;
+}
+
+DecalOutline read_outline(Fields& fields) {
+    const Json* outline = fields.find("outline");
+    if (!outline) return DecalOutline::rectangle;
+    const std::string name = fields.text_of(*outline, "outline");
+    if (name != "rectangle" && name != "ellipse")
+        refuse("{}: unknown outline \"{}\" (known: rectangle, ellipse)", fields.place(), name);
+    return name == "ellipse" ? DecalOutline::ellipse : DecalOutline::rectangle;
+}
+
+const char* name_of(DecalOutline outline) {
+    return outline == DecalOutline::ellipse ? "ellipse" : "rectangle";
+}
+
+}  // namespace
+
+TerrainDecal read_decal(Fields& fields) {
+    TerrainDecal d;
+    d.x_m = fields.number("x");
+    d.y_m = fields.number("y");
+    d.half_m = read_vector(fields, "half_m", d.half_m);
+    d.heading_rad = fields.number("heading_rad", 0);
+    d.outline = read_outline(fields);
+    d.material = read_material(fields);
+    return d;
+}
+
+SplineDecal read_spline(Fields& fields) {
+    SplineDecal s;
+    const double width_m = fields.number("width_m", SplinePoint{}.width_m);
+    s.fade_m = fields.number("fade_m", s.fade_m);
+    s.carve = fields.number("carve", s.carve);
+    s.shoulder_m = fields.number("shoulder_m", s.shoulder_m);
+    for (const Json& point : fields.list("points")) {
+        const size_t size = point.is_array() ? point.size() : 0, index = s.points.size();
+        if (size < 2 || size > 4)
+            refuse("{}: control point {} must be [x, y], [x, y, z] or [x, y, z, width]", fields.place(),
+                   index);
+        if (size == 2 && s.carve > 0)
+            refuse("{}: control point {} has no z, a carve needs every one", fields.place(), index);
+        const std::string what = fmt::format("points[{}]", index);
+        s.points.push_back({fields.number_of(point[0], what), fields.number_of(point[1], what),
+                            size > 2 ? fields.number_of(point[2], what) : 0,
+                            size > 3 ? fields.number_of(point[3], what) : width_m});
+    }
+    s.material = read_material(fields);
+    return s;
+}
+
+VolumeDecal read_volume(Fields& fields) {
+    VolumeDecal v;
+    v.center_m = read_vector<glm::dvec3>(fields, fields.need("at"), "at");
+    v.half_m = read_vector(fields, "half_m", v.half_m);
+    v.direction = read_vector(fields, "direction", v.direction);
+    v.roll_rad = fields.number("roll_rad", 0);
+    v.outline = read_outline(fields);
+    v.material = read_material(fields);
+    return v;
+}
+
+void write_decal(Json& json, const TerrainDecal& d) {
+    json["x"] = d.x_m;
+    json["y"] = d.y_m;
+    json["half_m"] = vector_json(d.half_m);
+    json["heading_rad"] = d.heading_rad;
+    json["outline"] = name_of(d.outline);
+    write_material(json, d.material);
+}
+
+void write_spline(Json& json, const SplineDecal& s) {
+    json["points"] = Json::array();
+    for (const SplinePoint& p : s.points) json["points"].push_back({p.x_m, p.y_m, p.z_m, p.width_m});
+    json["fade_m"] = s.fade_m;
+    json["carve"] = s.carve;
+    json["shoulder_m"] = s.shoulder_m;
+    write_material(json, s.material);
+}
+
+void write_volume(Json& json, const VolumeDecal& v) {
+    json["at"] = vector_json(v.center_m);
+    json["half_m"] = vector_json(v.half_m);
+    json["direction"] = vector_json(v.direction);
+    json["roll_rad"] = v.roll_rad;
+    json["outline"] = name_of(v.outline);
+    write_material(json, v.material);
+}
+
+}  // namespace loam

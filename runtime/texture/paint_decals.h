@@ -1,0 +1,49 @@
+// Terrain decals, splines and volumes (document/ground_decal.h) as the shaders have them: what they are made
+// of, where they lie in a frame, and the ground's heights under volumes.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <glm/vec3.hpp>
+
+#include "runtime/base/rect.h"
+#include "runtime/document/operator.h"
+#include "runtime/document/spline_path.h"
+#include "shaders/texture/paint_io.h"
+
+namespace loam {
+
+class Document;
+class LayerSet;
+
+// A decal that lies on the ground at `origin_m`'s frame: the segments of a spline's piece are appended to
+// `segments`.
+[[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers,
+                                          const TerrainDecal& decal, glm::dvec3 origin_m);
+[[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers,
+                                          const VolumeDecal& volume, glm::dvec3 origin_m);
+[[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers,
+                                          const SplineDecal& spline, const SplinePiece& piece,
+                                          glm::dvec3 origin_m, std::vector<shared::PaintSegment>& segments);
+
+// Whether every target's channels have one weight, so that one draw will do (paint.frag).
+[[nodiscard]] bool even_channels(const DecalMaterial& material);
+
+// Of what fades when smaller than a texel (decal_fade).
+[[nodiscard]] double size_m(const TerrainDecal& decal);
+[[nodiscard]] double size_m(const VolumeDecal& volume);
+[[nodiscard]] double size_m(const SplineDecal& spline);
+
+// The level of the height map whose samples a page under a volume is looked up in: the finest that is no
+// finer than the page's texels.
+[[nodiscard]] int ground_level(const Document& document, double texel_m);
+// A height that changed is seen by texels within this distance.
+[[nodiscard]] double ground_reach_m(const Document& document, double texel_m);
+
+// Fills in the grid of an instance and appends its heights. `square_corner`: of the page's payload; `texels`:
+// of the page that the instance covers. The caller holds the ReadLock.
+void add_ground(const Document& document, glm::dvec2 square_corner, double texel_m, const TexelRect& texels,
+                double center_z_m, shared::PaintInstance& instance, std::vector<float>& heights);
+
+}  // namespace loam
