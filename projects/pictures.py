@@ -49,6 +49,20 @@ def walk(project, start, end, stride=0.75):
     project.apply({"cmd": "footprints", "prints": prints, "length_m": 0.32, "depth_m": 0.03, "seed": 5})
 
 
+def road_picture(project, path):
+    """A road that cuts into a slope, a track that crosses it, a decal beside it and a volume on a steep face."""
+    layers = project.layers
+    gravel = "scree" if "scree" in layers else layers[-1]
+    dirt = "dirt" if "dirt" in layers else layers[0]
+    road = project.spline_through([(1905, 1745), (1960, 1795), (2010, 1840), (2050, 1905), (2120, 1960), (2190, 2040)], 7)
+    project.spline(road, carve=1, shoulder_m=7, layer=gravel, edge=0.35, rough=0.4, fade_m=6, colour=[0.85, 0.83, 0.8])
+    track = project.spline_through([(1960, 1880), (2010, 1862), (2060, 1850), (2120, 1870)], 3)
+    project.spline(track, layer=dirt, edge=0.7, rough=0.7, fade_m=12, colour=[0.8, 0.72, 0.62])
+    project.decal(2004, 1858, half_m=[9, 6], heading_rad=0.6, outline="ellipse", layer=dirt, edge=0.5, rough=0.8,
+                  colour=[0.75, 0.68, 0.6])
+    picture(project, look(project, (1935, 1752), (2035, 1885), 26), path)
+
+
 def main(source, out):
     os.makedirs(out, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:

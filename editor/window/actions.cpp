@@ -28,6 +28,8 @@ constexpr Bound kBound[] = {
     {"paint", Key::digit_5, {}},
     {"crater", Key::digit_6, {}},
     {"footprints", Key::digit_7, {}},
+    {"decal", Key::digit_8, {}},
+    {"road", Key::digit_9, {}},
     {"raise", Key::r, {}},
     {"lower", Key::l, {}},
     {"paint", Key::b, {}},
@@ -117,7 +119,9 @@ void App::run(std::string_view action, ui::Ui& ui) {
 void App::handle_keys(const std::vector<ui::Event>& keys, ui::Ui& ui) {
     for (const ui::Event& event : keys) {
         if (!event.down) continue;
-        if (event.key == Key::escape && tools.stroking()) tools.cancel();
+        if (event.key == Key::escape && (tools.stroking() || tools.drawing_road())) tools.cancel();
+        if (event.key == Key::enter && tools.tool == Tool::road)
+            if (const auto command = tools.end_road()) apply(*command);
         const auto action = shortcuts.find(event.key, event.mods);
         if (!action) continue;
         // Letters steer while flying; the keys with Ctrl keep their meaning, but E and Q sit under the same fingers.

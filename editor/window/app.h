@@ -102,6 +102,7 @@ class App {
     void viewport_input(ui::Ui& ui, const ui::ViewportResponse& response, double dt_s);
     [[nodiscard]] const std::optional<glm::dvec3>& cursor_ground() const { return cursor_; }
     [[nodiscard]] std::optional<ToolController::Ring> ring() const { return ring_; }
+    [[nodiscard]] const std::vector<ToolController::Outline>& outlines() const { return outlines_; }
     [[nodiscard]] bool flying() const { return drag_ == CameraInput::Drag::look; }
     // A frame must follow at once: something moves by itself or is being held down.
     [[nodiscard]] bool busy() const { return tools.stroking() || camera.moving() || drag_ != CameraInput::Drag::none; }
@@ -138,6 +139,7 @@ class App {
     ui::Vec2 mouse_{-1, -1}, press_mouse_{0, 0};
     std::optional<glm::dvec3> cursor_;
     std::optional<ToolController::Ring> ring_;
+    std::vector<ToolController::Outline> outlines_;
     uint64_t cursor_revision_ = ~uint64_t{0};
     glm::dvec3 cursor_camera_{0};
     double cursor_yaw_ = 0, cursor_pitch_ = 0;

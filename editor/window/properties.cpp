@@ -61,6 +61,35 @@ void gait_properties(ui::Ui& ui, GaitDesc& gait) {
                {.min = 1.2, .max = 6, .decimals = 1, .unit = "feet", .tooltip = "From one foot to the next"});
 }
 
+void share_slider(ui::Ui& ui, std::string_view label, double& share) {
+    double percent = share * 100;
+    if (ui::slider(ui, label, percent, {.min = 0, .max = 100, .decimals = 0, .unit = "%"})) share = percent / 100;
+}
+
+void decal_properties(ui::Ui& ui, App& app) {
+    DecalDesc& decal = app.tools.settings.decal;
+    brush_properties(ui, app.tools.brush(), true);
+    ui::slider(ui, "Stretch", decal.stretch, {.min = 0.1, .max = 10, .decimals = 2, .logarithmic = true});
+    share_slider(ui, "Rough edge", decal.rough);
+    ui::checkbox(ui, "Round", decal.ellipse);
+    tint_properties(ui, app.tools.settings);
+}
+
+void road_properties(ui::Ui& ui, App& app) {
+    RoadDesc& road = app.tools.settings.road;
+    Brush& brush = app.tools.brush();
+    double width_m = 2 * brush.radius_m;
+    if (ui::slider(ui, "Width", width_m, {.min = 0.2, .max = 100, .decimals = 1, .unit = "m", .logarithmic = true}))
+        brush.radius_m = width_m / 2;
+    share_slider(ui, "Opacity", brush.strength);
+    share_slider(ui, "Soft edge", road.edge);
+    ui::checkbox(ui, "Carve the ground", road.carve);
+    ui.push_disabled(!road.carve);
+    ui::slider(ui, "Shoulder", road.shoulder_m, {.min = 0, .max = 50, .decimals = 1, .unit = "m"});
+    ui.pop_disabled();
+    tint_properties(ui, app.tools.settings);
+}
+
 void tool_properties(App& app, ui::Ui& ui) {
     ToolSettings& settings = app.tools.settings;
     ui.push_id(tool_name(app.tools.tool));
@@ -86,6 +115,8 @@ void tool_properties(App& app, ui::Ui& ui) {
             break;
         case Tool::crater: crater_properties(ui, app); break;
         case Tool::footprints: gait_properties(ui, settings.gait); break;
+        case Tool::decal: decal_properties(ui, app); break;
+        case Tool::road: road_properties(ui, app); break;
     }
     ui.pop_id();
 }
@@ -104,8 +135,10 @@ void layer_palette(App& app, ui::Ui& ui) {
                          .texture = i < app.layer_pictures.size() ? app.layer_pictures[i] : 0});
     }
     if (ui::tile_grid(ui, "layers", tiles, selected, {.picture = 56})) {
-        app.set_layer(layers[size_t(selected)]);
-        app.set_tool(Tool::paint);
+        const size_t layer = size_t(layers[size_t(selected)]);
+        app.set_layer(int(layer));
+        const bool lays = app.tools.tool == Tool::decal || app.tools.tool == Tool::road;
+        if (!lays || entries[layer].blend) app.set_tool(Tool::paint); // a transition can only be painted
     }
 }
 

@@ -44,22 +44,27 @@ class CoarseHeights {
     int mip_ = 0;
 };
 
-void draw_polygon(App& app, ui::Ui& ui, const ui::Rect& viewport, glm::dvec2 center, double radius, ui::Color color) {
-    const Camera& camera = app.camera.camera();
-    const glm::dmat4 clip = camera.clip_from_rel(viewport.w, viewport.h);
+std::vector<glm::dvec3> ring_places(App& app, glm::dvec2 center, double radius) {
     const bool exact = radius <= kExactRadius_m;
     std::vector<glm::dvec3> places(kCorners);
-    {
-        std::optional<CoarseHeights> coarse;
-        if (!exact) coarse.emplace(app.session.document(), radius * 2 * M_PI / kCorners * 0.5);
-        for (int i = 0; i < kCorners; ++i) {
-            const double angle = 2 * M_PI * i / kCorners;
-            const glm::dvec2 p = center + radius * glm::dvec2(std::cos(angle), std::sin(angle));
-            places[size_t(i)] = glm::dvec3(p, exact ? app.height_at(p.x, p.y) : coarse->at(p));
-        }
-    }
-    std::vector<Corner> corners(kCorners);
+    std::optional<CoarseHeights> coarse;
+    if (!exact) coarse.emplace(app.session.document(), radius * 2 * M_PI / kCorners * 0.5);
     for (int i = 0; i < kCorners; ++i) {
+        const double angle = 2 * M_PI * i / kCorners;
+        const glm::dvec2 p = center + radius * glm::dvec2(std::cos(angle), std::sin(angle));
+        places[size_t(i)] = glm::dvec3(p, exact ? app.height_at(p.x, p.y) : coarse->at(p));
+    }
+    return places;
+}
+
+// A line over the ground. `reach_m`: how far from the ground a place may seem to be and still count as on it.
+void draw_line(App& app, ui::Ui& ui, const ui::Rect& viewport, const std::vector<glm::dvec3>& places, bool closed,
+               double reach_m, ui::Color color) {
+    const Camera& camera = app.camera.camera();
+    const glm::dmat4 clip = camera.clip_from_rel(viewport.w, viewport.h);
+    const int count = int(places.size());
+    std::vector<Corner> corners(places.size());
+    for (int i = 0; i < count; ++i) {
         const glm::dvec3 offset = places[size_t(i)] - camera.position_m;
         const glm::dvec4 c = clip * glm::dvec4(offset, 1);
         Corner& corner = corners[size_t(i)];
@@ -71,19 +76,20 @@ void draw_polygon(App& app, ui::Ui& ui, const ui::Rect& viewport, glm::dvec2 cen
             corner.hidden = corners[size_t(i - 1)].hidden;
             continue;
         }
-        const double distance = glm::length(offset), tolerance = 0.01 * distance + 0.02 * radius + 0.05;
+        const double distance = glm::length(offset), tolerance = 0.01 * distance + 0.02 * reach_m + 0.05;
         const auto hit = app.session.ray_cast(camera.position_m, offset / distance, distance - tolerance);
         corner.hidden = hit && hit->has_value();
     }
     const float width = ui.px(1.5f);
-    for (int i = 0; i < kCorners; ++i) {
-        const Corner &a = corners[size_t(i)], &b = corners[size_t((i + 1) % kCorners)];
+    const int lines = closed ? count : count - 1;
+    for (int i = 0; i < lines; ++i) {
+        const Corner &a = corners[size_t(i)], &b = corners[size_t((i + 1) % count)];
         if (!a.in_front || !b.in_front) continue;
         const float opacity = a.hidden ? 0.25f : 1.0f;
         ui.draw().line(a.at, b.at, ui::Color::hex(0x000000, 130).faded(opacity), width + ui.px(1.5f));
     }
-    for (int i = 0; i < kCorners; ++i) {
-        const Corner &a = corners[size_t(i)], &b = corners[size_t((i + 1) % kCorners)];
+    for (int i = 0; i < lines; ++i) {
+        const Corner &a = corners[size_t(i)], &b = corners[size_t((i + 1) % count)];
         if (!a.in_front || !b.in_front) continue;
         ui.draw().line(a.at, b.at, color.faded(a.hidden ? 0.25f : 1.0f), width);
     }
@@ -92,12 +98,21 @@ void draw_polygon(App& app, ui::Ui& ui, const ui::Rect& viewport, glm::dvec2 cen
 } // namespace
 
 void draw_ring(App& app, ui::Ui& ui, const ui::Rect& viewport) {
-    const auto ring = app.ring();
-    if (!ring || !app.view.show_ring) return;
+    if (!app.view.show_ring) return;
     ui.draw().push_clip(viewport);
-    draw_polygon(app, ui, viewport, ring->center_m, ring->radius_m, ui::Color::hex(0xffffff, 235));
-    if (ring->inner_share > 0.05)
-        draw_polygon(app, ui, viewport, ring->center_m, ring->radius_m * ring->inner_share, ui::Color::hex(0xffffff, 110));
+    for (const ToolController::Outline& outline : app.outlines()) {
+        std::vector<glm::dvec3> places;
+        for (const glm::dvec2& at : outline.places_m) places.emplace_back(at, app.height_at(at.x, at.y));
+        draw_line(app, ui, viewport, places, outline.closed, app.tools.brush().radius_m, ui::Color::hex(0xffffff, 235));
+    }
+    if (const auto ring = app.ring()) {
+        const double radius = ring->radius_m, inner = radius * ring->inner_share;
+        draw_line(app, ui, viewport, ring_places(app, ring->center_m, radius), true, radius,
+                  ui::Color::hex(0xffffff, 235));
+        if (ring->inner_share > 0.05)
+            draw_line(app, ui, viewport, ring_places(app, ring->center_m, inner), true, inner,
+                      ui::Color::hex(0xffffff, 110));
+    }
     ui.draw().pop_clip();
 }
 

@@ -11,6 +11,8 @@ ui::Icon tool_icon(Tool tool) {
         case Tool::paint: return ui::Icon::paint;
         case Tool::crater: return ui::Icon::crater;
         case Tool::footprints: return ui::Icon::footprints;
+        case Tool::decal: return ui::Icon::decal;
+        case Tool::road: return ui::Icon::road;
     }
     return ui::Icon::none;
 }
@@ -26,6 +28,8 @@ std::string_view tool_hint(Tool tool) {
         case Tool::paint: return "Paint a layer. Ctrl-click picks the layer";
         case Tool::crater: return "Click for a crater, drag for its size";
         case Tool::footprints: return "Drag to walk";
+        case Tool::decal: return "Lay a piece of the chosen layer: click, or drag to turn it";
+        case Tool::road: return "Click place by place, drag a place to move it. Enter, or a click on the last, ends";
     }
     return {};
 }

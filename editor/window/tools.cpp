@@ -9,12 +9,13 @@ namespace loam::window {
 
 namespace {
 
-constexpr double kDragBegins_px = 5; // a crater's click may tremble so much
+constexpr double kDragBegins_px = 5; // a click may tremble so much
+constexpr double kCoarse_m = 0.25;   // a road's outline may miss it by so much
 
 constexpr std::array<std::string_view, kToolCount> kNames = {"raise", "lower",  "smooth",    "flatten",
-                                                             "paint", "crater", "footprints"};
+                                                             "paint", "crater", "footprints", "decal", "road"};
 constexpr std::array<std::string_view, kToolCount> kTitles = {"Raise", "Lower",  "Smooth",    "Flatten",
-                                                              "Paint", "Crater", "Footprints"};
+                                                              "Paint", "Crater", "Footprints", "Decal", "Road"};
 
 SculptMode mode_of(Tool tool) {
     switch (tool) {
@@ -43,12 +44,15 @@ ToolController::ToolController(ToolQueries queries) : queries_(std::move(queries
     settings.brushes[size_t(Tool::flatten)].hardness = 0.6;
     settings.brushes[size_t(Tool::paint)] = {.radius_m = 6, .strength = 1, .hardness = 0.7};
     settings.brushes[size_t(Tool::crater)].radius_m = 8;
+    settings.brushes[size_t(Tool::decal)] = {.radius_m = 4, .strength = 1, .hardness = 0.7};
+    settings.brushes[size_t(Tool::road)] = {.radius_m = 3, .strength = 1, .hardness = 0.7};
 }
 
 void ToolController::cancel() {
     stroking_ = picking_ = false;
     spacer_.end();
     gait_.end();
+    road_.clear();
 }
 
 void ToolController::begin(const ToolInput& input) {
@@ -150,7 +154,82 @@ std::optional<Command> ToolController::footprints(const ToolInput& input) {
     return Command{.body = std::move(command), .group = group_};
 }
 
+DecalMaterial ToolController::material() const {
+    DecalMaterial m;
+    m.layer = settings.layer;
+    if (settings.use_tint || settings.layer.empty()) m.colour = glm::dvec3(settings.tint);
+    m.opacity = brush().strength;
+    m.edge = 1 - brush().hardness;
+    m.seed = settings.seed;
+    return m;
+}
+
+// Turned towards the cursor; a click leaves it pointing away from the camera.
+TerrainDecal ToolController::decal_at(const ToolInput& input) const {
+    TerrainDecal d;
+    d.x_m = center_m_.x;
+    d.y_m = center_m_.y;
+    d.half_m = {brush().radius_m, brush().radius_m * settings.decal.stretch};
+    d.heading_rad = input.camera_yaw_rad;
+    if (input.ground && input.moved_px >= kDragBegins_px)
+        d.heading_rad = std::atan2(input.ground->x - center_m_.x, input.ground->y - center_m_.y);
+    d.outline = settings.decal.ellipse ? DecalOutline::ellipse : DecalOutline::rectangle;
+    d.material = material();
+    d.material.rough = settings.decal.rough;
+    return d;
+}
+
+std::optional<Command> ToolController::decal(const ToolInput& input) {
+    if (!input.released) return {};
+    Command command{.body = AddOperatorCommand{decal_at(input)}, .group = group_};
+    ++settings.seed;
+    return command;
+}
+
+std::vector<SplinePoint> ToolController::road_points(const std::vector<glm::dvec3>& places) const {
+    std::vector<SplinePoint> through;
+    for (const glm::dvec3& at : places) through.push_back({at.x, at.y, at.z, 2 * brush().radius_m});
+    return bezier_through(through);
+}
+
+std::optional<Command> ToolController::end_road() {
+    SplineDecal road;
+    road.points = road_points(road_);
+    cancel();
+    if (road.points.empty()) return {};
+    road.carve = settings.road.carve ? 1 : 0;
+    road.shoulder_m = settings.road.shoulder_m;
+    road.fade_m = 2 * brush().radius_m;
+    road.material = material();
+    road.material.edge = settings.road.edge;
+    Command command{.body = AddOperatorCommand{std::move(road)}, .group = 0};
+    if (!check_command(command)) return {}; // both places are one
+    ++settings.seed;
+    return command;
+}
+
+std::optional<Command> ToolController::road(const ToolInput& input) {
+    if (input.pressed && input.ground) {
+        const double reach_m = std::max(brush().radius_m, 0.5);
+        stroking_ = true;
+        for (held_place_ = 0; held_place_ < road_.size(); ++held_place_)
+            if (glm::length(glm::dvec2(road_[held_place_] - *input.ground)) < reach_m) break;
+        held_last_ = !road_.empty() && held_place_ + 1 == road_.size();
+        if (held_place_ == road_.size()) road_.push_back(*input.ground);
+    }
+    if (!stroking_) return {};
+    if (input.ground && input.moved_px >= kDragBegins_px) road_[held_place_] = *input.ground;
+    if (input.held && !input.released) return {};
+    stroking_ = false;
+    return input.released && held_last_ && input.moved_px < kDragBegins_px && road_.size() > 1 ? end_road()
+                                                                                              : std::nullopt;
+}
+
 std::vector<Command> ToolController::update(const ToolInput& input) {
+    if (tool == Tool::road) {
+        auto command = road(input);
+        return command ? std::vector<Command>{*std::move(command)} : std::vector<Command>{};
+    }
     if (input.pressed && input.ground) begin(input);
     if (!stroking_) return {};
     if (!input.held && !input.released) { // the capture was lost
@@ -161,6 +240,7 @@ std::vector<Command> ToolController::update(const ToolInput& input) {
     if (!picking_) {
         if (tool == Tool::crater) command = crater(input);
         else if (tool == Tool::footprints) command = footprints(input);
+        else if (tool == Tool::decal) command = decal(input);
         else if (tool == Tool::paint) command = paint(input);
         else command = sculpt(input);
     }
@@ -170,12 +250,44 @@ std::vector<Command> ToolController::update(const ToolInput& input) {
     return {*std::move(command)};
 }
 
+std::vector<ToolController::Outline> ToolController::outlines(const ToolInput& input) const {
+    if (tool == Tool::decal && stroking_) {
+        const TerrainDecal d = decal_at(input);
+        const glm::dvec2 up(std::sin(d.heading_rad), std::cos(d.heading_rad)), right(up.y, -up.x);
+        Outline box{.places_m = {}, .closed = true};
+        constexpr int kSteps = 8; // a side, so that it follows the ground
+        const glm::dvec2 corners[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
+        for (int side = 0; side < 4; ++side)
+            for (int i = 0; i < kSteps; ++i) {
+                const glm::dvec2 at = glm::mix(corners[side], corners[side + 1], double(i) / kSteps) * d.half_m;
+                box.places_m.push_back(center_m_ + right * at.x + up * at.y);
+            }
+        return {box};
+    }
+    if (tool != Tool::road || road_.empty()) return {};
+    std::vector<glm::dvec3> places = road_;
+    if (input.ground && !stroking_) places.push_back(*input.ground); // where a click would lead it
+    const SplinePath path(road_points(places), kCoarse_m);
+    Outline left, right;
+    for (const SplineSegment& s : path.segments()) {
+        const glm::dvec2 aside(s.direction.y, -s.direction.x);
+        left.places_m.push_back(s.from_m - aside * s.half_from_m);
+        right.places_m.push_back(s.from_m + aside * s.half_from_m);
+        if (&s != &path.segments().back()) continue;
+        const glm::dvec2 to = s.from_m + s.direction * s.length_m;
+        left.places_m.push_back(to - aside * s.half_to_m);
+        right.places_m.push_back(to + aside * s.half_to_m);
+    }
+    return {left, right};
+}
+
 std::optional<ToolController::Ring> ToolController::ring(const ToolInput& input) const {
     if (!input.ground) return {};
     const glm::dvec2 at(*input.ground);
     if (tool == Tool::crater) return Ring{stroking_ ? center_m_ : at, crater_radius_m(input), 0};
     if (tool == Tool::footprints) return Ring{at, settings.gait.length_m * 0.5, 0};
-    return Ring{at, brush().radius_m, brush().hardness};
+    if (tool == Tool::decal && stroking_) return {};
+    return Ring{at, brush().radius_m, tool == Tool::road ? 0 : brush().hardness};
 }
 
 } // namespace loam::window

@@ -16,11 +16,12 @@
 
 #include "editor/window/stroke.h"
 #include "runtime/document/command.h"
+#include "runtime/document/spline_path.h"
 
 namespace loam::window {
 
-enum class Tool { raise, lower, smooth, flatten, paint, crater, footprints };
-inline constexpr int kToolCount = 7;
+enum class Tool { raise, lower, smooth, flatten, paint, crater, footprints, decal, road };
+inline constexpr int kToolCount = 9;
 [[nodiscard]] std::string_view tool_name(Tool tool);   // "raise": also the action's name
 [[nodiscard]] std::string_view tool_title(Tool tool);  // "Raise"
 
@@ -28,6 +29,18 @@ struct Brush {
     double radius_m = 10;
     double strength = 0.5; // 0 … 1 of what the tool can do in a dab
     double hardness = 0.4;
+};
+
+struct DecalDesc {
+    double stretch = 1;  // length over width; the brush's radius is half the width
+    double rough = 0.3;
+    bool ellipse = false;
+};
+
+struct RoadDesc {
+    bool carve = true;
+    double shoulder_m = 4;
+    double edge = 0.3; // share of the half width
 };
 
 struct ToolSettings {
@@ -43,6 +56,8 @@ struct ToolSettings {
     double crater_heat = 0;                // seen on maps with the thermal or the emissive channel
     uint32_t seed = 1;
     GaitDesc gait;
+    DecalDesc decal;
+    RoadDesc road; // the brush's radius is half the width
 };
 
 struct ToolInput {
@@ -72,7 +87,12 @@ class ToolController {
     // One frame's input gives the commands to apply now, at most one of each kind.
     std::vector<Command> update(const ToolInput& input);
     [[nodiscard]] bool stroking() const { return stroking_; }
-    void cancel();
+    void cancel(); // also drops a road that is being drawn
+
+    // A road is drawn place by place: a press sets one or takes hold of one, a press on the last ends it. Nothing where it
+    // has no two places yet.
+    [[nodiscard]] bool drawing_road() const { return !road_.empty(); }
+    std::optional<Command> end_road();
 
     // What to draw around the cursor.
     struct Ring {
@@ -80,6 +100,11 @@ class ToolController {
         double radius_m = 0, inner_share = 0;
     };
     [[nodiscard]] std::optional<Ring> ring(const ToolInput& input) const;
+    struct Outline {
+        std::vector<glm::dvec2> places_m;
+        bool closed = false;
+    };
+    [[nodiscard]] std::vector<Outline> outlines(const ToolInput& input) const; // of what would be placed
 
     // Height that one dab of full strength moves: grows with the brush, so that a hill keeps its shape at any size.
     [[nodiscard]] static double dab_height_m(const Brush& brush) { return brush.strength * brush.radius_m * 0.1; }
@@ -93,6 +118,11 @@ class ToolController {
     std::optional<Command> paint(const ToolInput& input);
     std::optional<Command> crater(const ToolInput& input);
     std::optional<Command> footprints(const ToolInput& input);
+    std::optional<Command> decal(const ToolInput& input);
+    std::optional<Command> road(const ToolInput& input);
+    [[nodiscard]] TerrainDecal decal_at(const ToolInput& input) const;
+    [[nodiscard]] DecalMaterial material() const;
+    [[nodiscard]] std::vector<SplinePoint> road_points(const std::vector<glm::dvec3>& places) const;
     std::vector<glm::dvec2> dabs(const ToolInput& input, bool also_resting);
     [[nodiscard]] double crater_radius_m(const ToolInput& input) const;
 
@@ -105,6 +135,9 @@ class ToolController {
     Gait gait_;
     double resting_s_ = 0, target_m_ = 0;
     glm::dvec2 center_m_{0};
+    std::vector<glm::dvec3> road_; // places so far
+    size_t held_place_ = 0;
+    bool held_last_ = false;       // the press took hold of the place that was last already
 };
 
 } // namespace loam::window

@@ -101,6 +101,7 @@ void App::viewport_input(ui::Ui& ui, const ui::ViewportResponse& response, doubl
     for (const Command& command : tools.update(input)) apply(command);
     if (response.released) tool_drag_ = false;
     ring_ = drag_ == CameraInput::Drag::none ? tools.ring(input) : std::nullopt;
+    outlines_ = tools.outlines(input);
     if (response.hovered && !flying()) ui.set_cursor(ui::Cursor::crosshair);
 }
 

@@ -144,4 +144,57 @@ TEST(Tools, ALostCaptureEndsTheStroke) {
     EXPECT_FALSE(b.tools.stroking());
 }
 
+TEST(Tools, ADecalTurnsTowardsTheDragAndTakesTheBrush) {
+    Bench b;
+    b.tools.tool = Tool::decal;
+    b.tools.settings.layer = "rock";
+    b.tools.brush() = {.radius_m = 3, .strength = 0.8, .hardness = 0.75};
+    b.tools.settings.decal.stretch = 2;
+    b.step(10, 10, true, false);
+    b.step(20, 10, false, false, 0.03, {.moved_px = 40});
+    EXPECT_EQ(b.tools.outlines({}).size(), 1u);
+    b.step(20, 10, false, true, 0.03, {.moved_px = 40});
+    ASSERT_EQ(b.all.size(), 1u);
+    const auto decal = std::get<TerrainDecal>(b.body<AddOperatorCommand>(0).shape);
+    EXPECT_DOUBLE_EQ(decal.x_m, 10);
+    EXPECT_NEAR(decal.heading_rad, 1.5707963, 1e-6) << "east";
+    EXPECT_EQ(decal.half_m, glm::dvec2(3, 6));
+    EXPECT_EQ(decal.material.layer, "rock");
+    EXPECT_DOUBLE_EQ(decal.material.edge, 0.25);
+    EXPECT_TRUE(b.tools.outlines({}).empty());
+}
+
+TEST(Tools, ARoadGoesFromClickToClickUntilItsLastPlaceIsClickedAgain) {
+    Bench b;
+    b.tools.tool = Tool::road;
+    b.tools.brush().radius_m = 2;
+    const auto click = [&](double x, double y) {
+        b.step(x, y, true, false);
+        b.step(x, y, false, true);
+    };
+    click(0, 0);
+    EXPECT_TRUE(b.all.empty());
+    EXPECT_FALSE(b.tools.end_road().has_value()) << "one place is no road";
+    click(0, 0);
+    click(50, 0);
+    b.step(50, 0, true, false); // a place is dragged
+    b.step(60, 20, false, false, 0.03, {.moved_px = 50});
+    b.step(60, 20, false, true, 0.03, {.moved_px = 50});
+    EXPECT_TRUE(b.all.empty());
+    click(100, 0);
+    EXPECT_TRUE(b.tools.drawing_road());
+    EXPECT_EQ(b.tools.outlines({}).size(), 2u);
+    click(100, 0);
+    ASSERT_EQ(b.all.size(), 1u);
+    const auto road = std::get<SplineDecal>(b.body<AddOperatorCommand>(0).shape);
+    ASSERT_EQ(road.points.size(), 7u);
+    EXPECT_EQ(road.points[3], (SplinePoint{60, 20, 12, 4}));
+    EXPECT_EQ(road.carve, 1);
+    EXPECT_FALSE(b.tools.drawing_road());
+    click(0, 0);
+    click(30, 0);
+    b.tools.cancel();
+    EXPECT_FALSE(b.tools.end_road().has_value());
+}
+
 } // namespace
