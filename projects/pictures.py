@@ -50,17 +50,22 @@ def walk(project, start, end, stride=0.75):
 
 
 def road_picture(project, path):
-    """A road that cuts into a slope, a track that crosses it, a decal beside it and a volume on a steep face."""
-    layers = project.layers
-    gravel = "scree" if "scree" in layers else layers[-1]
-    dirt = "dirt" if "dirt" in layers else layers[0]
-    road = project.spline_through([(1905, 1745), (1960, 1795), (2010, 1840), (2050, 1905), (2120, 1960), (2190, 2040)], 7)
-    project.spline(road, carve=1, shoulder_m=7, layer=gravel, edge=0.35, rough=0.4, fade_m=6, colour=[0.85, 0.83, 0.8])
-    track = project.spline_through([(1960, 1880), (2010, 1862), (2060, 1850), (2120, 1870)], 3)
-    project.spline(track, layer=dirt, edge=0.7, rough=0.7, fade_m=12, colour=[0.8, 0.72, 0.62])
-    project.decal(2004, 1858, half_m=[9, 6], heading_rad=0.6, outline="ellipse", layer=dirt, edge=0.5, rough=0.8,
-                  colour=[0.75, 0.68, 0.6])
-    picture(project, look(project, (1935, 1752), (2035, 1885), 26), path)
+    """A road that cuts into a slope, a track that crosses it, a decal where it begins, rock projected onto a steep face."""
+    places = [(1820, 2262), (1880, 2292), (1935, 2318), (1985, 2338), (2035, 2372), (2075, 2405), (2130, 2425), (2185, 2455)]
+    z = [float(project.height(*at)) for at in places]
+    for _ in range(2):  # an even grade
+        z = [z[0]] + [(z[i - 1] + 2 * z[i] + z[i + 1]) / 4 for i in range(1, len(z) - 1)] + [z[-1]]
+    road = project.spline_through([(x, y, h) for (x, y), h in zip(places, z)], 8)
+    project.spline(road, carve=1, shoulder_m=8, layer="scree", edge=0.3, rough=0.35, fade_m=8, colour=[0.92, 0.9, 0.86])
+    track = project.spline_through([(2005, 2225), (2000, 2262), (1985, 2300), (1978, 2334), (1960, 2375), (1955, 2420)], 3.2)
+    project.spline(track, layer="dirt", edge=0.8, rough=0.6, fade_m=15, colour=[0.85, 0.78, 0.68])
+    project.decal(1992, 2288, half_m=[8, 5], heading_rad=0.6, outline="ellipse", layer="dirt", edge=0.5, rough=0.8,
+                  colour=[0.9, 0.82, 0.72])
+    x, y = 2022, 2340
+    facing = [-float(n) for n in project.normal(x, y)]
+    project.volume((x, y, float(project.height(x, y))), half_m=[13, 8, 8], direction=facing, layer="rock", edge=0.3,
+                   rough=0.9, outline="ellipse")
+    picture(project, look(project, (1958, 2268), (2004, 2345), 20, fov=60), path)
 
 
 def main(source, out):
@@ -71,6 +76,7 @@ def main(source, out):
         with loam.open(copy) as project:
             picture(project, look(project, (2000, 1500), (2260, 3000), 150, 40), f"{out}/valley.jpg")
             picture(project, look(project, (3000, 1200), (2600, 1900), 60), f"{out}/ridge.jpg")
+            road_picture(project, f"{out}/road.jpg")
             for i, (x, y, r) in enumerate([(2040, 1905, 14), (2075, 1935, 6), (2010, 1940, 9), (2120, 1990, 22)]):
                 project.apply({"cmd": "crater", "x": x, "y": y, "radius_m": r, "seed": 3 + i})
             walk(project, (2004.5, 1855), (2034, 1886))
