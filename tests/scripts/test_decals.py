@@ -224,3 +224,28 @@ def test_replayed_scripts_and_bad_decals(plain, tmp_path):
     with loam.open(str(fresh)) as p:
         assert p.digest() == digest
     assert loam.verify(str(fresh)) == []
+
+
+def test_a_layer_that_shares_its_file_is_laid_and_a_transition_is_refused(plain):
+    toml = plain / "project.toml"
+    text = toml.read_text()
+    with loam.open(str(plain)) as p:
+        dirt = p.layers[1]
+    entry = next(part for part in text.split("[[layer]]")[1:] if f'"{dirt}"' in part).split("\n[")[0]
+    toml.write_text(text.rstrip() + "\n\n[[layer]]" + entry.replace(f'name = "{dirt}"', 'name = "twin"').rstrip() + "\n")
+    with loam.open(str(plain)) as p:
+        assert p.layers[-1] == "twin"
+        bare = p.render(ABOVE, size=SIZE)
+        p.decal(128, 128, half_m=[6, 6], layer=dirt)
+        laid = p.render(ABOVE, size=SIZE)
+        assert (laid != bare).any()
+        p.edit_operator(1, layer=p.layers[2])
+        assert (p.render(ABOVE, size=SIZE) != laid).any()
+        p.edit_operator(1, layer="twin")
+        assert (p.render(ABOVE, size=SIZE) == laid).all(), "the same textures by another name"
+        p.transition("edge", p.layers[0], dirt)
+        with pytest.raises(loam.Error, match=f'"edge" is a transition without one: name a layer, such as "{dirt}"'):
+            p.edit_operator(1, layer="edge")
+        with pytest.raises(loam.Error, match="is a transition"):
+            p.spline([[0, 0], [50, 10], [90, 40], [120, 90]], width_m=3, layer="edge")
+        assert (p.render(ABOVE, size=SIZE) == laid).all()
