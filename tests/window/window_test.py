@@ -202,11 +202,15 @@ def test_resize_and_cameras(display, opened):
     away(display, window)
     zoomed = display.screenshot()
     assert changed_share(orbited, zoomed, at, half=60) > 0.05
-    display.xdotool("mousemove", *at, "mousedown", 3, "keydown", "w")
-    time.sleep(1)
-    display.xdotool("keyup", "w", "mouseup", 3)
-    away(display, window)
-    assert changed_share(zoomed, display.screenshot(), at, half=60) > 0.05
+    for _ in range(4):  # on a busy machine a second of flight is few frames
+        display.xdotool("mousemove", *at, "mousedown", 3, "keydown", "w")
+        time.sleep(1)
+        display.xdotool("keyup", "w", "mouseup", 3)
+        away(display, window)
+        flown = changed_share(zoomed, display.screenshot(), at, half=60)
+        if flown > 0.05:
+            break
+    assert flown > 0.05
     assert window.commands() == [], "moving the camera must not edit"
     motion = window.last("motion")
     assert motion and motion["frames"] > 3
@@ -224,6 +228,18 @@ def menu_item(display, window, title_x, steps):
 VIEW_X, DEBUG_X = 104, 153
 DEBUG_ENTRIES = ("none", "mips", "sectors")
 VIEW_QUALITY_ENTRY = {"very_low": 10, "mid": 12}  # entries before the qualities: camera 3, shading 1, resolution 4, outline 1
+
+
+def choose_quality(display, window, name, pages_a_side):
+    """The next texture is shown once it has what the picture wants: on a busy machine that takes a while."""
+    menu_item(display, window, VIEW_X, VIEW_QUALITY_ENTRY[name])
+    for _ in range(20):
+        away(display, window)
+        texture = window.last("texture")
+        if texture["quality"] == name:
+            break
+        time.sleep(1)
+    assert texture["quality"] == name and texture["pages"] == pages_a_side**2, texture
 
 
 def test_quality_and_debug_views_from_the_menu(display, opened):
@@ -250,15 +266,10 @@ def test_quality_and_debug_views_from_the_menu(display, opened):
     assert changed_share(start, display.screenshot(), middle, half) == 0, "the final picture is another one than before"
 
     # Another size of the texture: reported, the picture is as sharp or sharper, and back again it is the same.
-    before = window.last("texture")
-    menu_item(display, window, VIEW_X, VIEW_QUALITY_ENTRY["mid"])
-    away(display, window)
-    after = window.last("texture")
-    assert after != before and after["quality"] == "mid" and after["pages"] == 22 * 22
+    assert window.last("texture")["quality"] == "low"
+    choose_quality(display, window, "mid", 22)
     keep("quality_mid.png", display.screenshot())
-    menu_item(display, window, VIEW_X, VIEW_QUALITY_ENTRY["very_low"])
-    away(display, window)
-    assert window.last("texture")["pages"] == 13 * 13
+    choose_quality(display, window, "very_low", 13)
     keep("quality_very_low.png", display.screenshot())
     assert window.commands() == [], "a view is no edit"
     closed_cleanly(window, display)
