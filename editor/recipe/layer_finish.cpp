@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "editor/recipe/layer_canvas.h"
+#include "shaders/texture/layer_math.h"
 
 namespace loam::recipe {
 
@@ -128,7 +129,8 @@ LayerTextures finished(Canvas& canvas, const Finish& f) {
             a[0] = srgb_byte(colour.r), a[1] = srgb_byte(colour.g), a[2] = srgb_byte(colour.b);
             a[3] = byte((fine[c] - low) / (high - low));
             uint8_t* b = &out.normal_gloss_occlusion[0][c * 4];
-            b[0] = byte(-dx * length * 0.5f + 0.5f), b[1] = byte(-dy * length * 0.5f + 0.5f);
+            b[0] = byte(shared::layer_encode_signed(-dx * length));
+            b[1] = byte(shared::layer_encode_signed(-dy * length));
             b[2] = byte(gloss[c]), b[3] = byte(open[c]);
         }
     build_layer_mips(out);

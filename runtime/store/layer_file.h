@@ -4,8 +4,8 @@
 // | texture | format | channels |
 // | --- | --- | --- |
 // | albedo_reveal | RGBA8 | albedo sRGB-encoded in RGB, reveal (height-like blend map, linear) in A |
-// | normal_gloss_occlusion | RGBA8 | normal X, normal Y (tangent space, green up, n*0.5+0.5), gloss (1 -
-// roughness), occlusion | | metalness | R8 | metalness |
+// | normal_gloss_occlusion | RGBA8 | normal X, normal Y (tangent space, green up, 128 + 127 n), gloss (1 - roughness),
+// occlusion | | metalness | R8 | metalness |
 //
 // Mips are box-filtered in linear light; normals are averaged and their shortening lowers the mip's gloss
 // (Infinite Warfare talk, "Texture Packer").

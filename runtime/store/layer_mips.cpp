@@ -1,14 +1,13 @@
 // Mips of a layer's textures: 2x2 boxes, colours in linear light, normals by their vector mean. What the mean
 // lost in length is spread of direction, which goes into the gloss, so that distant ground does not glitter.
-// Source: the Infinite Warfare talk ("Texture Packer"); the length-to-roughness fit is that of a von
-// Mises-Fisher lobe, kappa = (3 r - r^3) / (1 - r^2), alpha'^2 = alpha^2 + 2 / kappa (Neubelt and Pettineo
-// 2013).
+// Source: the Infinite Warfare talk ("Texture Packer"); how much is shaders/texture/layer_math.h.
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "runtime/base/check.h"
 #include "runtime/store/layer_file.h"
+#include "shaders/texture/layer_math.h"
 
 namespace loam {
 
@@ -59,21 +58,20 @@ void shrink_normal(const uint8_t* fine, uint8_t* coarse, const Quad& quad) {
     int occlusion = 0;
     for (const size_t at : quad.at) {
         const uint8_t* t = fine + 4 * at;
-        const double nx = t[0] / 127.5 - 1, ny = t[1] / 127.5 - 1;
-        x += nx / 4;
-        y += ny / 4;
-        z += std::sqrt(std::max(0.0, 1 - nx * nx - ny * ny)) / 4;
-        const double roughness = 1 - t[2] / 255.0;
-        alpha2 += roughness * roughness * roughness * roughness / 4;  // alpha = roughness^2
+        const shared::vec3 n = shared::layer_normal_of_xy(
+            {shared::layer_decode_signed(float(t[0]) / 255), shared::layer_decode_signed(float(t[1]) / 255)});
+        x += n.x / 4;
+        y += n.y / 4;
+        z += n.z / 4;
+        alpha2 += shared::layer_alpha2_of_gloss(float(t[2]) / 255) / 4;
         occlusion += t[3];
     }
     const double length = std::min(1.0, std::sqrt(x * x + y * y + z * z));
-    if (length < 1 - 1e-5)
-        alpha2 += 2 * (1 - length * length) / std::max(1e-6, 3 * length - length * length * length);
+    if (length < 1 - 1e-5) alpha2 += shared::layer_spread_alpha2(float(length));
     const double scale = length > 1e-6 ? 1 / length : 0;
-    coarse[0] = byte_of((x * scale + 1) / 2);
-    coarse[1] = byte_of((y * scale + 1) / 2);
-    coarse[2] = byte_of(1 - std::sqrt(std::sqrt(std::min(1.0, alpha2))));
+    coarse[0] = byte_of(shared::layer_encode_signed(float(x * scale)));
+    coarse[1] = byte_of(shared::layer_encode_signed(float(y * scale)));
+    coarse[2] = byte_of(shared::layer_gloss_of_alpha2(float(alpha2)));
     coarse[3] = uint8_t((occlusion + 2) / 4);
 }
 

@@ -10,6 +10,7 @@
 #ifndef LOAM_TEXTURE_MATERIAL_GLSL
 #define LOAM_TEXTURE_MATERIAL_GLSL
 #include "shaders/texture/compose_io.h"
+#include "shaders/texture/layer_math.h"
 #include "shaders/texture/ompv.h"
 #include "shaders/texture/page_channels.glsl"
 #include "shaders/texture/tile_hiding.h"
@@ -148,7 +149,7 @@ MaterialSample evaluate_material(MaterialCorners c) {
         }
     }
     material.albedo = albedo;
-    material.normal = surface.xy * (255.0 / 127.0) - 128.0 / 127.0; // 128 is a flat normal's byte
+    material.normal = vec2(layer_decode_signed(surface.x), layer_decode_signed(surface.y));
     material.gloss = surface.z;
     material.occlusion = surface.w;
     material.metalness = metalness;
