@@ -26,6 +26,20 @@ constexpr FilterName kFilters[] = {{"auto", std::nullopt},
                                    {"tiles", Filter::anisotropic_tiles},
                                    {"hardware", Filter::anisotropic_hardware}};
 
+struct NormalDirectionName {
+    const char* name;
+    NormalDirection direction;
+};
+constexpr NormalDirectionName kNormalDirections[] = {{"gl", NormalDirection::gl},
+                                                     {"dx", NormalDirection::dx}};
+
+struct ColorEncodingName {
+    const char* name;
+    ColorEncoding encoding;
+};
+constexpr ColorEncodingName kColorEncodings[] = {{"srgb", ColorEncoding::srgb},
+                                                 {"linear", ColorEncoding::linear}};
+
 // The row of that name.
 template <typename Row>
 Result<const Row*> find_named(std::string_view what, std::string_view name, std::span<const Row> rows) {
@@ -72,6 +86,19 @@ Result<DebugView> parse_debug_view(std::string_view name) {
     auto row = find_named("debug view", name, debug_views());
     if (!row) return row.error();
     return (*row)->view;
+}
+
+Result<NormalDirection> parse_normal_direction(std::string_view name) {
+    auto row =
+        find_named("direction of normals", name, std::span<const NormalDirectionName>(kNormalDirections));
+    if (!row) return row.error();
+    return (*row)->direction;
+}
+
+Result<ColorEncoding> parse_color_encoding(std::string_view name) {
+    auto row = find_named("encoding of colours", name, std::span<const ColorEncodingName>(kColorEncodings));
+    if (!row) return row.error();
+    return (*row)->encoding;
 }
 
 }  // namespace loam

@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "editor/packer/pack_folder.h"
 #include "runtime/frame/debug_views.h"
 #include "runtime/frame/renderer.h"
 
@@ -25,5 +26,7 @@ struct PageFormatName {
 [[nodiscard]] Result<PageFormat> parse_page_format(std::string_view name);        // bc1, bc3, bc1x4, rgba8
 [[nodiscard]] Result<std::optional<Filter>> parse_filter(std::string_view name);  // auto, bilinear, …
 [[nodiscard]] Result<DebugView> parse_debug_view(std::string_view name);          // none, mips, sectors, …
+[[nodiscard]] Result<NormalDirection> parse_normal_direction(std::string_view name);  // gl, dx
+[[nodiscard]] Result<ColorEncoding> parse_color_encoding(std::string_view name);      // srgb, linear
 
 }  // namespace loam

@@ -71,28 +71,56 @@ Status check_png_chunks(const std::filesystem::path& file) {
     return error("{} is cut short: its {} bytes end before the end of the picture", file.string(), size);
 }
 
-// Reads all channels in the file's own type and keeps the first as floats.
+// A JPEG is marker segments, then compressed rows whose only markers are restarts, up to the end marker.
+// libjpeg fills the rows that are missing with grey and says nothing that reaches us.
+Status check_jpeg_end(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+    const auto at = [&](size_t i) { return static_cast<unsigned char>(bytes[i]); };
+    if (bytes.size() < 3 || at(0) != 0xff || at(1) != 0xd8 || at(2) != 0xff) return {};
+    size_t i = 2;
+    while (i + 1 < bytes.size()) {
+        if (at(i) != 0xff || at(i + 1) == 0 || at(i + 1) == 0xff ||
+            (at(i + 1) >= 0xd0 && at(i + 1) <= 0xd7)) {
+            ++i;  // compressed data, fill bytes, restarts
+            continue;
+        }
+        if (at(i + 1) == 0xd9) return {};
+        if (i + 3 >= bytes.size()) break;
+        i += 2 + (size_t{at(i + 2)} << 8 | at(i + 3));
+    }
+    return error("{} is cut short: its {} bytes end before the end of the picture", file.string(),
+                 bytes.size());
+}
+
+// Keeps the first channels of `count` pixels as floats.
 template <typename T>
-bool read_channels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type,
-                   SampleImage& out) {
+void keep_pixels(const T* pixels, size_t count, size_t channels, float* target, SampleImage& out) {
+    const auto kept = static_cast<size_t>(out.kept_channel_count);
+    const size_t color_channels = channels < 3 ? 1 : 3;  // 2: grey and alpha, 4: RGBA
+    for (size_t i = 0; i < count; ++i) {
+        const T* pixel = pixels + i * channels;
+        for (size_t c = 0; c < kept; ++c) target[i * kept + c] = static_cast<float>(pixel[c]);
+        for (size_t c = 1; c < color_channels; ++c)
+            out.channels_differ = out.channels_differ || pixel[c] != pixel[0];
+    }
+}
+
+// Reads all channels in the file's own type.
+template <typename T>
+bool read_rows(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, SampleImage& out) {
     const auto channels = static_cast<size_t>(spec.nchannels);
     const auto width = static_cast<size_t>(spec.width);
     constexpr int kRows = 64;
-    const size_t color_channels = channels < 3 ? 1 : 3;  // 2: grey and alpha, 4: RGBA
     std::vector<T> rows(width * channels * kRows);
     for (int y = 0; y < spec.height; y += kRows) {
         const int end = std::min(spec.height, y + kRows);
         if (!input.read_scanlines(0, 0, spec.y + y, spec.y + end, spec.z, 0, spec.nchannels, type,
                                   rows.data()))
             return false;
-        const size_t count = width * static_cast<size_t>(end - y);
-        float* target = out.samples.data() + static_cast<size_t>(y) * width;
-        for (size_t i = 0; i < count; ++i) {
-            const T* pixel = rows.data() + i * channels;
-            target[i] = static_cast<float>(pixel[0]);
-            for (size_t c = 1; c < color_channels; ++c)
-                out.channels_differ = out.channels_differ || pixel[c] != pixel[0];
-        }
+        const size_t from = static_cast<size_t>(y) * width * static_cast<size_t>(out.kept_channel_count);
+        keep_pixels(rows.data(), width * static_cast<size_t>(end - y), channels, out.samples.data() + from,
+                    out);
     }
     return true;
 }
@@ -100,24 +128,29 @@ bool read_channels(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::T
 template <typename T>
 bool read_tiled(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, SampleImage& out) {
     const auto channels = static_cast<size_t>(spec.nchannels);
-    const size_t color_channels = channels < 3 ? 1 : 3;
-    std::vector<T> all(out.samples.size() * channels);
+    const size_t pixels = static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height);
+    std::vector<T> all(pixels * channels);
     if (!input.read_image(0, 0, 0, spec.nchannels, type, all.data())) return false;
-    for (size_t i = 0; i < out.samples.size(); ++i) {
-        out.samples[i] = static_cast<float>(all[i * channels]);
-        for (size_t c = 1; c < color_channels; ++c)
-            out.channels_differ = out.channels_differ || all[i * channels + c] != all[i * channels];
-    }
+    keep_pixels(all.data(), pixels, channels, out.samples.data(), out);
     return true;
 }
 
 template <typename T>
 bool read_as(OIIO::ImageInput& input, const OIIO::ImageSpec& spec, OIIO::TypeDesc type, SampleImage& out) {
-    return spec.tile_width > 0 ? read_tiled<T>(input, spec, type, out)
-                               : read_channels<T>(input, spec, type, out);
+    return spec.tile_width > 0 ? read_tiled<T>(input, spec, type, out) : read_rows<T>(input, spec, type, out);
 }
 
-Result<SampleImage> read_with_oiio(const std::filesystem::path& file, int max_side) {
+// OpenImageIO turns inks into red, green and blue by arithmetic that no printer knows.
+bool is_inks(const OIIO::ImageSpec& spec) {
+    for (const char* name : {"jpeg:ColorSpace", "tiff:ColorSpace", "oiio:ColorSpace"}) {
+        const std::string space = spec.get_string_attribute(name);
+        if (space == "CMYK" || space == "YCbCrK" || space == "YCCK" || space == "color separated")
+            return true;
+    }
+    return false;
+}
+
+Result<SampleImage> read_with_oiio(const std::filesystem::path& file, int max_side, KeptChannels keep) {
     OIIO::ImageSpec hints;
     hints.attribute("oiio:UnassociatedAlpha", 1);  // leave the samples alone
     auto input = OIIO::ImageInput::open(file.string(), &hints);
@@ -130,13 +163,19 @@ Result<SampleImage> read_with_oiio(const std::filesystem::path& file, int max_si
     if (spec.width > max_side || spec.height > max_side)
         return error("{} is too large: {}x{} samples, at most {} a side", file.string(), spec.width,
                      spec.height, max_side);
+    if (is_inks(spec))
+        return error("{} is made of inks (CMYK), expected grey or red, green and blue: convert it first",
+                     file.string());
 
     SampleImage out;
     out.width = spec.width;
     out.height = spec.height;
     out.channel_count = spec.nchannels;
     out.format = input->format_name();
-    out.samples.resize(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height));
+    out.color_space = spec.get_string_attribute("oiio:ColorSpace");
+    if (keep == KeptChannels::up_to_four) out.kept_channel_count = std::min(4, spec.nchannels);
+    out.samples.resize(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) *
+                       static_cast<size_t>(out.kept_channel_count));
     bool ok = false;
     switch (spec.format.basetype) {
         case OIIO::TypeDesc::UINT8:
@@ -215,11 +254,12 @@ Status write_caught(const std::filesystem::path& file, const OIIO::ImageSpec& sp
 
 }  // namespace
 
-Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side) {
+Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side, KeptChannels keep) {
     LOAM_TRY(check_readable(file));
     LOAM_TRY(check_png_chunks(file));
+    LOAM_TRY(check_jpeg_end(file));
     try {
-        return read_with_oiio(file, max_side);
+        return read_with_oiio(file, max_side, keep);
     } catch (const std::exception& exception) {
         return error("{} cannot be read: {}", file.string(), one_line(exception.what()));
     }
@@ -228,6 +268,7 @@ Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side
 Result<RgbaImage> read_rgba8(const std::filesystem::path& file, int max_side) {
     LOAM_TRY(check_readable(file));
     LOAM_TRY(check_png_chunks(file));
+    LOAM_TRY(check_jpeg_end(file));
     try {
         return read_rgba8_with_oiio(file, max_side);
     } catch (const std::exception& exception) {

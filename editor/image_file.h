@@ -13,22 +13,27 @@ namespace loam {
 
 enum class SampleKind { unsigned_8, unsigned_16, signed_16, floating };
 
-// The first channel of a picture as it lies in the file: row 0 is the top (north), integers keep their
-// values.
+// What is kept of a picture: heights are its first channel, materials need all of them.
+enum class KeptChannels { first, up_to_four };
+
+// Samples of a picture as they lie in the file: row 0 is the top (north), integers keep their values.
 struct SampleImage {
     int width = 0, height = 0;
-    int channel_count = 1;
+    int channel_count = 1;       // of the file
+    int kept_channel_count = 1;  // of `samples`, interleaved
     bool channels_differ =
         false;  // some pixel's red, green and blue are not equal (an alpha channel is not counted)
     SampleKind kind = SampleKind::unsigned_16;
     bool was_double = false;  // 64-bit floats, read as 32-bit ones
     std::string format;       // "png", "tiff", "openexr", …
+    std::string color_space;  // as the file states it ("sRGB", "Linear", …), may be empty
     std::vector<float> samples;
 };
 
-// Refuses a missing file, text, an unknown format, a file that is cut short, more than `max_side` pixels a
-// side.
-[[nodiscard]] Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side);
+// Refuses a missing file, text, an unknown format, a file that is cut short, inks (CMYK), more than
+// `max_side` pixels a side.
+[[nodiscard]] Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side,
+                                               KeptChannels keep = KeptChannels::first);
 
 // Eight bits a channel as in the file, no colour conversion; grey is repeated, missing alpha is 255.
 struct RgbaImage {

@@ -119,6 +119,13 @@ Status Session::change_settings(const ProjectSettings& settings) {
     return renderer_ ? renderer_->settings_changed(*ring_) : Status();
 }
 
+Result<AddedLayer> Session::add_layer(const AddLayerRequest& request, const Progress& progress) {
+    auto added = loam::add_layer(*document_, request, progress);
+    if (!added) return added;
+    if (renderer_) LOAM_TRY(renderer_->settings_changed(*ring_));
+    return added;
+}
+
 Status Session::record_to(const std::filesystem::path& file) {
     auto recorder = std::make_unique<Recorder>();
     recorder->path = file;

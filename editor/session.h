@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "editor/layer_import.h"
 #include "runtime/base/result.h"
 #include "runtime/document/document.h"
 #include "runtime/frame/camera.h"
@@ -72,6 +73,8 @@ class Session {
     Result<Dirt> apply(const Command& command);
     // Settings that may change (sun, ground, layers): the document's, and what is rendered from now on.
     Status change_settings(const ProjectSettings& settings);
+    // The layer can be painted with, and is drawn, once this returns; a renderer loads the layers again.
+    Result<AddedLayer> add_layer(const AddLayerRequest& request, const Progress& progress);
     // Every command from now on is appended to this file, one JSON line each.
     Status record_to(const std::filesystem::path& file);
 

@@ -17,9 +17,10 @@ std::string shown(const Option& option) {
 }  // namespace
 
 const std::vector<Verb>& verbs() {
-    static const std::vector<Verb> table = {edit_verb(),   new_verb(),    import_verb(),     export_verb(),
-                                            encode_verb(), replay_verb(), render_verb(),     info_verb(),
-                                            set_verb(),    transition_verb(), verify_verb(), bench_verb()};
+    static const std::vector<Verb> table = {edit_verb(),       new_verb(),    import_verb(), export_verb(),
+                                            layer_verb(),      pack_verb(),   encode_verb(), replay_verb(),
+                                            render_verb(),     info_verb(),   set_verb(),
+                                            transition_verb(), verify_verb(), bench_verb()};
     return table;
 }
 
@@ -77,6 +78,38 @@ Result<SessionDesc> session_desc(const Args& args) {
     }
     LOAM_TRY(change_settings(desc.renderer, args.text("--set")));
     return desc;
+}
+
+std::vector<Option> with_pack_options(std::vector<Option> options) {
+    const Option pack[] = {
+        {"--size", ValueKind::integer, "N",
+         "texels a side, a power of two; default: nearest to the colour map, at most 2048"},
+        {"--normal", ValueKind::text, "D",
+         "gl or dx: green points up or down; default: by name, else by the slopes"},
+        {"--color", ValueKind::text, "E", "srgb or linear; default: floats are linear, integers sRGB"},
+        {"--relief", ValueKind::number, "SHARE",
+         "depth of a height map as a share of the tile, for normals made of it; default 0.03"},
+    };
+    options.insert(options.end(), std::begin(pack), std::end(pack));
+    return options;
+}
+
+Result<PackRequest> pack_request(const Args& args, const std::string& folder) {
+    PackRequest request{.folder = folder, .size_texels = args.integer("--size", 0)};
+    if (args.has("--size") && request.size_texels <= 0)
+        return error("--size {} must be above 0", request.size_texels);
+    if (args.has("--normal")) {
+        auto direction = parse_normal_direction(args.text("--normal"));
+        if (!direction) return direction.error();
+        request.normal = *direction;
+    }
+    if (args.has("--color")) {
+        auto encoding = parse_color_encoding(args.text("--color"));
+        if (!encoding) return encoding.error();
+        request.color = *encoding;
+    }
+    request.relief = args.number("--relief", request.relief);
+    return request;
 }
 
 }  // namespace loam::cli

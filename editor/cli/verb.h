@@ -34,9 +34,15 @@ struct Verb {
 [[nodiscard]] Verb transition_verb();
 [[nodiscard]] Verb verify_verb();
 [[nodiscard]] Verb bench_verb();
+[[nodiscard]] Verb layer_verb();
+[[nodiscard]] Verb pack_verb();
 
 // --device, --validation, --quality, --format, --set: for every verb that renders.
 [[nodiscard]] std::vector<Option> with_device_options(std::vector<Option> options);
 [[nodiscard]] Result<SessionDesc> session_desc(const Args& args);
+
+// --size, --normal, --color, --relief: for the verbs that read a folder of maps.
+[[nodiscard]] std::vector<Option> with_pack_options(std::vector<Option> options);
+[[nodiscard]] Result<PackRequest> pack_request(const Args& args, const std::string& folder);
 
 }  // namespace loam::cli

@@ -8,6 +8,12 @@ void unwrap(const Status& status) {
     if (!status.ok()) throw PythonError(status.message());
 }
 
+Going keep_going(double, std::string_view) {
+    const py::gil_scoped_acquire acquire;
+    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+    return Going::on;
+}
+
 py::object to_python(const Json& json) {
     switch (json.type()) {
         case Json::value_t::boolean:

@@ -25,6 +25,8 @@ void unwrap(const Status& status);
 // A dict or a string of JSON becomes the line that parse_command reads.
 [[nodiscard]] std::string command_line(const py::handle& command);
 [[nodiscard]] py::array_t<uint8_t> to_numpy(const Picture& picture);  // (height, width, 4)
+// A Progress: Ctrl-C in Python cancels, by an exception.
+Going keep_going(double share, std::string_view what);
 // None, a text as on the command line, or a tuple (x, y, z, yaw_deg, pitch_deg[, fov_deg]).
 [[nodiscard]] Camera to_camera(const py::handle& camera, Session& session);
 

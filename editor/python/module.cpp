@@ -11,13 +11,6 @@ namespace loam::python {
 
 namespace {
 
-// Ctrl-C in Python cancels.
-Going keep_going(double, std::string_view) {
-    const py::gil_scoped_acquire acquire;
-    if (PyErr_CheckSignals() != 0) throw py::error_already_set();
-    return Going::on;
-}
-
 void new_project(const std::string& path, const std::string& recipe, double size_m, uint32_t seed,
                  int layer_size) {
     const py::gil_scoped_release release;

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include <pybind11/stl.h>
 
@@ -212,6 +213,28 @@ void set(Project& p, const std::string& name, const py::object& value) {
     unwrap(p.session().change_settings(settings));
 }
 
+py::object add_layer(Project& p, const std::string& folder, const std::optional<std::string>& name,
+                     double tile_m, const std::optional<std::string>& normal,
+                     const std::optional<std::string>& color, int size, double relief) {
+    AddLayerRequest request{
+        .pack = {.folder = folder, .size_texels = size, .normal = {}, .color = {}, .relief = relief},
+        .name = name.value_or(""),
+        .tile_m = tile_m};
+    if (normal) request.pack.normal = unwrap(parse_normal_direction(*normal));
+    if (color) request.pack.color = unwrap(parse_color_encoding(*color));
+    Session& session = p.session();
+    AddedLayer added;
+    {
+        const py::gil_scoped_release release;
+        added = unwrap(session.add_layer(request, keep_going));
+    }
+    return to_python(Json{{"name", added.entry.name},
+                          {"index", added.index},
+                          {"file", added.entry.file},
+                          {"tile_m", added.entry.tile_m},
+                          {"report", added.report}});
+}
+
 void bind_edits(py::class_<Project>& c) {
     using Points = std::vector<std::array<double, 2>>;
     c.def("apply", &Project::apply, "Applies a command (a dict or JSON); returns the rectangles it touched.",
@@ -353,6 +376,11 @@ void bind_edits(py::class_<Project>& c) {
             unwrap(p.session().change_settings(settings));
         },
         "Its texels show the nearer of its layers from now on.", py::arg("name"));
+    c.def("add_layer", &add_layer,
+          "Makes a layer of a folder of maps; returns its name, index, file and the packer's report.",
+          py::arg("folder"), py::arg("name") = py::none(), py::arg("tile_m") = 2.0,
+          py::arg("normal") = py::none(), py::arg("color") = py::none(), py::arg("size") = 0,
+          py::arg("relief") = 0.03);
     c.def(
         "record_to", [](Project& p, const std::string& file) { unwrap(p.session().record_to(file)); },
         "Appends every command from now on to a script.", py::arg("file"));

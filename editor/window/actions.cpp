@@ -45,6 +45,7 @@ constexpr Bound kBound[] = {
     {"open", Key::o, kCtrl},
     {"save", Key::s, kCtrl},
     {"export", Key::e, kCtrl},
+    {"add layer", Key::l, kCtrl},
     {"quit", Key::q, kCtrl},
     {"frame", Key::f, {}},
     {"home", Key::home, {}},
@@ -90,6 +91,11 @@ void App::run(std::string_view action, ui::Ui& ui) {
     if (action == "export") {
         path_text = (std::filesystem::current_path() / (session.document().settings().name + ".png")).string();
         return ui::open_dialog(ui, "Export picture");
+    }
+    if (action == "add layer") {
+        path_text = session.document().folder().parent_path().string();
+        new_layer_name.clear();
+        return ui::open_dialog(ui, "Add layer");
     }
     if (action == "shortcuts") return ui::open_dialog(ui, "Keyboard and mouse");
     if (action == "quit") {

@@ -170,6 +170,15 @@ void App::change_quality(Quality quality, PageFormat format) {
     quality_changed_ = scene_changed_ = true;
 }
 
+void App::layer_added(const AddedLayer& layer) {
+    read_layer_names();
+    set_layer(layer.index);
+    set_tool(Tool::paint);
+    say(fmt::format("Layer {} added, {} texels", layer.entry.name, layer.report.at("size_texels").get<int>()));
+    for (const PackJson& warning : layer.report.at("warnings")) errors_.push_back(warning.get<std::string>());
+    scene_changed();
+}
+
 void App::resize_brush(double factor) {
     if (tools.tool == Tool::footprints) {
         tools.settings.gait.length_m = std::clamp(tools.settings.gait.length_m * factor, 0.05, 5.0);

@@ -48,10 +48,11 @@ struct HistoryStep { // commands of one group
 
 // Asked for by actions, done by the window's loop between two frames.
 struct Wish {
-    enum class Kind { none, open_project, export_picture };
+    enum class Kind { none, open_project, export_picture, add_layer };
     Kind kind = Kind::none;
     std::filesystem::path path;
     int width = 0, height = 0;
+    AddLayerRequest layer{};
 };
 
 class App {
@@ -71,6 +72,8 @@ class App {
     std::vector<std::string> shader_errors;
     std::string path_text;                     // of the dialogs
     int export_width = 1920, export_height = 1080;
+    std::string new_layer_name;                // of the dialog; empty: the folder's
+    double new_layer_tile_m = 2;
     bool quit = false;
 
     // --- edits ---
@@ -84,6 +87,8 @@ class App {
     int transition_from = 0, transition_to = 1; // of the next one to be made; among the layers with textures
     void set_tool(Tool tool);
     void set_layer(int index);
+    // After the session has added it: into the palette and in use, its warnings said.
+    void layer_added(const AddedLayer& layer);
     [[nodiscard]] int layer() const; // of the paint tool, -1: none
     void change_quality(Quality quality, PageFormat format); // of the virtual texture
     void resize_brush(double factor);

@@ -19,6 +19,7 @@ constexpr std::string_view kHelp[][2] = {
     {", and .", "previous and next layer"},
     {"F, Home", "frame the spot under the cursor, the whole map"},
     {"Ctrl+Z, Ctrl+Y", "undo, redo"},
+    {"Ctrl+L", "add a layer from a folder of maps"},
     {"G, F3", "stay above the ground, direct shading"},
 };
 
@@ -69,6 +70,21 @@ void export_dialog(App& app, ui::Ui& ui) {
                 .height = app.export_height};
 }
 
+void add_layer_dialog(App& app, ui::Ui& ui) {
+    auto dialog = ui::dialog(ui, "Add layer", 480);
+    if (!dialog) return;
+    ui::paragraph(ui, "A folder of maps by the usual names: …_Color, _NormalGL, _Roughness, _Displacement and so on.",
+                  ui::Tone::dim);
+    ui::text_field(ui, "Folder", app.path_text);
+    ui::text_field(ui, "Name", app.new_layer_name, {.placeholder = "as the folder"});
+    ui::slider(ui, "Tile", app.new_layer_tile_m, {.min = 0.1, .max = 100, .decimals = 2, .unit = "m", .logarithmic = true,
+                                                  .tooltip = "Metres of ground that the maps cover"});
+    ui.space(8);
+    if (ui::dialog_buttons(ui, {"Cancel", "Add"}) != 1) return;
+    app.wish = {.kind = Wish::Kind::add_layer, .path = app.path_text,
+                .layer = {.pack = {.folder = app.path_text}, .name = app.new_layer_name, .tile_m = app.new_layer_tile_m}};
+}
+
 } // namespace
 
 void build_dialogs(App& app, ui::Ui& ui) {
@@ -76,6 +92,7 @@ void build_dialogs(App& app, ui::Ui& ui) {
     open_dialog(app, ui);
     record_dialog(app, ui);
     export_dialog(app, ui);
+    add_layer_dialog(app, ui);
     for (const std::string& text : app.take_errors()) ui.toast(text, ui.theme.error, 8);
 }
 

@@ -122,7 +122,7 @@ void tool_properties(App& app, ui::Ui& ui) {
 }
 
 void layer_palette(App& app, ui::Ui& ui) {
-    if (app.layer_names.empty()) return ui::label(ui, "The project has no layers", ui::Tone::dim);
+    if (app.layer_names.empty()) ui::label(ui, "The project has no layers", ui::Tone::dim);
     const std::vector<LayerEntry>& entries = app.session.document().settings().layers;
     std::vector<ui::Tile> tiles;
     std::vector<int> layers; // by tile: removed transitions have none
@@ -140,6 +140,7 @@ void layer_palette(App& app, ui::Ui& ui) {
         const bool lays = app.tools.tool == Tool::decal || app.tools.tool == Tool::road;
         if (!lays || entries[layer].blend) app.set_tool(Tool::paint); // a transition can only be painted
     }
+    if (ui::button(ui, "Add layer…")) app.run("add layer", ui);
 }
 
 void sun_properties(App& app, ui::Ui& ui) {

@@ -50,6 +50,7 @@ Result<std::filesystem::path> WindowLoop::run() {
         LOAM_TRY(iterate());
         if (app_.wish.kind == Wish::Kind::open_project) return app_.wish.path;
         if (app_.wish.kind == Wish::Kind::export_picture) LOAM_TRY(export_picture());
+        if (app_.wish.kind == Wish::Kind::add_layer) LOAM_TRY(add_layer());
         if (options_.max_frames > 0 && redraws() >= uint64_t(options_.max_frames)) break;
     }
     return std::filesystem::path();
@@ -232,6 +233,20 @@ Status WindowLoop::export_picture() {
     }
     app_.scene_changed(); // the renderer's picture is another one now
     build_again_ = true;
+    return {};
+}
+
+Status WindowLoop::add_layer() {
+    const Wish wish = std::exchange(app_.wish, {});
+    const auto added = session_.add_layer(wish.layer, {});
+    build_again_ = true;
+    if (!added) {
+        if (session_.device()->lost()) return added.error();
+        app_.fail(added.message());
+        return {};
+    }
+    LOAM_TRY(add_layer_pictures());
+    app_.layer_added(*added);
     return {};
 }
 

@@ -41,6 +41,7 @@ class WindowLoop {
     void announce();
     Status add_layer_pictures(); // of layers that are new since the last call
     Status export_picture();
+    Status add_layer();
     Status poll_shaders(double now_s);
     void note_frame_time(double now_s);
 

@@ -228,6 +228,10 @@ Status Document::change_settings(const ProjectSettings& settings) {
     return {};
 }
 
+Status Document::check_writable() const {
+    return impl_->may_write();
+}
+
 Document::ReadLock Document::read_lock() const {
     const std::unique_lock after_writers(impl_->gate, std::chrono::milliseconds(20));
     return ReadLock(impl_->mutex);

@@ -75,6 +75,7 @@ class Document {
 
     // Settings that may change later (sun, haze, layer list): writes project.toml.
     Status change_settings(const ProjectSettings& settings);
+    [[nodiscard]] Status check_writable() const;
 
     // --- reads ---
     using ReadLock = std::shared_lock<std::shared_mutex>;

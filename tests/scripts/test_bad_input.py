@@ -142,7 +142,7 @@ def test_wrong_usage_exits_with_2(plain):
 
 
 def test_every_verb_has_help():
-    for verb in ("edit", "new", "import", "export", "encode", "replay", "render", "info", "verify", "bench"):
+    for verb in ("edit", "new", "import", "export", "layer", "pack", "encode", "replay", "render", "info", "verify", "bench"):
         done = run_loam(verb, "--help")
         assert done.returncode == 0 and verb in done.stdout
 

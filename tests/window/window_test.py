@@ -8,6 +8,7 @@ import sys
 import time
 
 import pytest
+from PIL import Image
 
 sys.path.insert(0, os.path.dirname(__file__))
 from desktop import Display, Window, missing_tools  # noqa: E402
@@ -280,3 +281,32 @@ def test_a_missing_project_is_one_sentence_and_a_failure(display, tmp_path):
     assert run.returncode != 0
     lines = [line for line in run.stderr.splitlines() if line]
     assert len(lines) == 1 and "nowhere" in lines[0]
+
+
+def test_a_layer_added_while_the_window_is_open_is_painted_with(display, project, opened, tmp_path):
+    folder = tmp_path / "blue"
+    folder.mkdir()
+    Image.new("RGB", (64, 64), (20, 40, 230)).save(folder / "blue_Color.png")
+    window = opened()
+    away(display, window)
+    start = display.screenshot()
+    # A folder that does not exist: said, nothing added.
+    for path in (tmp_path / "nowhere", folder):
+        display.key("ctrl+l")
+        display.xdotool("type", "--delay", 20, str(path))
+        display.key("Tab", "ctrl+a")
+        display.xdotool("type", "--delay", 20, "sky")
+        display.key("Tab", "Tab", "Tab", "Return")
+        window.settle()
+        added = '[[layer]]\nname = "sky"' in (project / "project.toml").read_text()
+        assert added == (path == folder), window.last("message")
+    a, b = place(window, 0.40, 0.70), place(window, 0.60, 0.70)
+    display.drag(*a, *b)
+    away(display, window)
+    painted = display.screenshot()
+    keep("added_layer.png", painted)
+    x, y = place(window, 0.5, 0.70)
+    red, _, blue = painted.getpixel((x, y))
+    assert blue > red + 40 and changed_share(start, painted, (x, y)) > 0.5
+    assert [c["layer"] for c in window.commands() if c["cmd"] == "paint"][-1] == "sky"
+    closed_cleanly(window, display)
