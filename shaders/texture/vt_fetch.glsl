@@ -39,6 +39,16 @@ VtTexels vt_mix(VtTexels from, VtTexels to, float share) {
     return VtTexels(mix(from.a, to.a, share), mix(from.b, to.b, share), mix(from.c, to.c, share), mix(from.d, to.d, share));
 }
 
+// Several taps are averaged in linear light, as the pixels of a larger picture would be: a mean of roots is darker.
+VtTexels vt_square(VtTexels t) {
+    t.a.rgb *= t.a.rgb;
+    return t;
+}
+VtTexels vt_root(VtTexels t) {
+    t.a.rgb = sqrt(t.a.rgb);
+    return t;
+}
+
 struct VtMaterial {
     vec3 albedo;      // linear
     vec2 normal;      // x, y of the material in the frame of the ground; z is positive

@@ -52,7 +52,7 @@ VtFound vt_find(VtPlace place) {
     return f;
 }
 
-// The taps of one page, spaced along the axis (filter_math.h says why they stay within its border).
+// The taps of one page, spaced along the axis (filter_math.h says why they stay within its border); with more than one, squares.
 VtTexels vt_probe(VtPlace place, VtFound f, vec2 axis, float spacing_m) {
     vec2 page = vec2(f.word & 0xffu, f.word >> 8u & 0xffu);
     vec2 uv = (page + f.in_page * (float(kPagePayload) / float(kPageTexels)) + float(kPageBorder) / float(kPageTexels)) *
@@ -64,7 +64,8 @@ VtTexels vt_probe(VtPlace place, VtFound f, vec2 axis, float spacing_m) {
         // A probe's part of the long axis, and across it the texel wanted: in the page at most two of its texels.
         float along = min(spacing_m * in_texels, kTapReach) * float(kVtTaps / kVtProbes);
         float across = min(exp2(place.log2_texel) * in_texels, kTapReach);
-        return vt_fetch_grad(uv, axis * (max(along, across) * texel_uv), vec2(-axis.y, axis.x) * (across * texel_uv));
+        return vt_square(
+            vt_fetch_grad(uv, axis * (max(along, across) * texel_uv), vec2(-axis.y, axis.x) * (across * texel_uv)));
     }
     const int taps = kVtTaps / kVtProbes;
     vec2 step_uv = axis * (min(spacing_m * in_texels, kTapReach) * texel_uv);
@@ -73,6 +74,7 @@ VtTexels vt_probe(VtPlace place, VtFound f, vec2 axis, float spacing_m) {
         vec2 at = taps > 1 ? uv + step_uv * (float(i) - 0.5 * float(taps - 1)) : uv;
         VtTexels tap = vt_fetch(at, kVtTrilinear ? 0.0 : floor(lod + 0.5));
         if (kVtTrilinear) tap = vt_mix(tap, vt_fetch(at, 1.0), lod);
+        if (kVtTaps > 1) tap = vt_square(tap);
         if (i == 0)
             sum = tap;
         else
@@ -102,6 +104,7 @@ VtSample vt_sample(ivec2 sector_delta, vec2 offset_m, float log2_long, float log
                 texels = vt_mix(texels, probe, 1.0 / float(i + 1));
         }
     }
+    if (kVtTaps > 1) texels = vt_root(texels);
     VtSample s;
     s.material = vt_decode(texels);
     s.word = found.word;
