@@ -11,6 +11,7 @@ namespace loam {
 
 namespace {
 
+constexpr size_t kSureTexels = 32 * 32;  // of fewer a correlation is chance
 constexpr double kSureCorrelation =
     0.15;                             // photographed grounds have 0.5–0.95, noise of JPEG blocks below 0.05
 constexpr double kCloseSlope = 0.05;  // z below this counts as this: slopes stay finite
@@ -86,7 +87,7 @@ Result<std::vector<glm::vec3>> normals_of(const MapImage& map, std::optional<Nor
     say(without, "have no length and stand upright");
 
     const double upward = upward_green(normals, map.width(), map.height());
-    const bool sure = std::abs(upward) > kSureCorrelation;
+    const bool sure = std::abs(upward) > kSureCorrelation && count >= kSureTexels;
     const NormalDirection seen = upward < 0 ? NormalDirection::dx : NormalDirection::gl;
     const auto title = [](NormalDirection d) { return d == NormalDirection::dx ? "DirectX" : "OpenGL"; };
     NormalDirection used = NormalDirection::gl;
