@@ -105,6 +105,7 @@ Json to_report(const FrameStatistics& s) {
             {"height_pages", s.height_pages},
             {"index_pages", s.index_pages},
             {"shadow_cascades_drawn", s.shadow_cascades_drawn},
+            {"shadow_parts_drawn", s.shadow_parts_drawn},
             {"height", counters(s.height)},
             {"index", counters(s.index)},
             {"texture", to_report(s.texture)},

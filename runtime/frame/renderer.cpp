@@ -346,8 +346,8 @@ Status Renderer::Impl::cmd_heights_view(gpu::Commands& commands, const gpu::Uplo
 void Renderer::on_dirt(const Dirt& dirt) {
     Impl& r = *impl_;
     r.changed = true;
+    r.shadows->on_dirt(dirt.height, *r.heights);
     r.heights->on_dirt(dirt.height);
-    r.shadows->on_dirt(dirt.height);
     r.indices->on_dirt(dirt.index);
     r.textures.on_dirt(dirt.index, dirt.texture);
     r.textures.on_height_dirt(dirt.height);
@@ -554,6 +554,7 @@ FrameStatistics Renderer::statistics() const {
     r.heights->map().for_each_resident([&](const MapPage&, int, const TexelRect&) { ++s.height_pages; });
     r.indices->map().for_each_resident([&](const MapPage&, int, const TexelRect&) { ++s.index_pages; });
     s.shadow_cascades_drawn = r.shadows->drawn();
+    s.shadow_parts_drawn = r.shadows->parts_drawn();
     s.texture = r.texture().statistics();
     s.passes = r.pass_times;
     s.height = r.heights->map().counters();

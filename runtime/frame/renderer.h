@@ -55,7 +55,7 @@ struct MemoryRow {
 struct FrameStatistics {
     uint32_t patches = 0, patches_visible = 0, triangles = 0;
     uint32_t height_pages = 0, index_pages = 0;
-    uint32_t shadow_cascades_drawn = 0;
+    uint32_t shadow_cascades_drawn = 0, shadow_parts_drawn = 0;  // whole cascades; parts of others
     VirtualTexture::Statistics texture;
     VirtualMap::Counters height, index;
     std::vector<MemoryRow> memory;

@@ -140,10 +140,10 @@ Status TerrainPass::cmd_draw_levels(gpu::Commands& commands, const PatchSet& pat
 }
 
 void TerrainPass::cmd_draw_shadow(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,
-                                  const glm::dmat4& clip_from_rel, const glm::dvec3& camera_m,
-                                  const DepthBias& bias) {
+                                  const glm::dmat4& clip_from_rel, const glm::dmat4& seen_from_rel,
+                                  const glm::dvec3& camera_m, const DepthBias& bias) {
     LOAM_CHECK(camera_m == patches.camera_m, "patches were selected for another camera");
-    const std::vector<uint32_t> seen = patches_in(patches, heights, clip_from_rel);
+    const std::vector<uint32_t> seen = patches_in(patches, heights, seen_from_rel);
     if (!instances_.data || seen.empty()) return;
     bind(commands, shadow_, patches, heights, glm::mat4(clip_from_rel), false);
     vkCmdSetDepthBias(commands.handle(), bias.constant, 0.0f, bias.slope);

@@ -43,10 +43,11 @@ class TerrainPass {
     // same set: the level of the height page under each pixel. Its pipeline is made when first used.
     Status cmd_draw_levels(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,
                            const glm::mat4& clip_from_rel, VkFormat format);
-    // Inside begun rendering without colour: the patches of the set that the matrix sees; depth GREATER.
+    // Inside begun rendering without colour: the patches of the set that `seen_from_rel` sees, by the first
+    // matrix; depth GREATER.
     void cmd_draw_shadow(gpu::Commands& commands, const PatchSet& patches, const HeightMap& heights,
-                         const glm::dmat4& clip_from_rel, const glm::dvec3& camera_m,
-                         const DepthBias& bias = {});
+                         const glm::dmat4& clip_from_rel, const glm::dmat4& seen_from_rel,
+                         const glm::dvec3& camera_m, const DepthBias& bias = {});
 
   private:
     void bind(gpu::Commands& commands, const gpu::Pipeline& pipeline, const PatchSet& patches,

@@ -1,6 +1,10 @@
 #include "runtime/scene/shadow_cascades.h"
 
 #include <cmath>
+#include <limits>
+#include <utility>
+
+#include "shaders/geometry/geometry_io.h"
 
 namespace loam {
 
@@ -19,6 +23,9 @@ constexpr double kDepthRange_m = 65536.0;
 // A tap reads at most 1.2 * |(0.4, 1)| + sqrt(2) texels beside its point (lighting.glsl), and a plane rises there by that
 // times the tangent of its angle to the light. Moved along its normal by this times the sine it lies above its own texels.
 constexpr float kNormalBias_texels = 2.75f;
+constexpr size_t kMostParts = 8;  // of a cascade, drawn one by one
+constexpr uint64_t kNoCut = 0;    // no set of patches has it, or one in 2^64
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 }  // namespace
 
@@ -40,17 +47,79 @@ Result<ShadowCascades> ShadowCascades::create(gpu::Device& device, uint32_t casc
     return shadows;
 }
 
-void ShadowCascades::on_dirt(std::span<const WorldRect> rects) {
-    for (auto& cascade : cascades_) {
+TexelRect ShadowCascades::covered(const Cascade& c, const HeightMap& heights, std::span<const MapPage> pages,
+                                  const WorldRect& rect) const {
+    const TexelRect whole{0, 0, int(texels_), int(texels_)};
+    const VirtualMap& map = heights.map();
+    // A changed vertex moves the triangles around it; along a stitched edge they are as long as the coarser
+    // neighbour's.
+    double quad_m = 0;
+    for (const MapPage& page : pages) {
+        const double own_m = map.page_size_m(page.level) / kPatchQuads;
+        if (map.page_rect(page).grown(own_m).overlaps(rect)) quad_m = std::max(quad_m, own_m);
+    }
+    const WorldRect grown = rect.grown(2.0 * quad_m);
+    double low_m = kInfinity, high_m = -kInfinity;
+    for (const MapPage& page : pages) {
+        const WorldRect square = map.page_rect(page);
+        if (!square.overlaps(grown)) continue;
+        const HeightPage* data = heights.resident_page(page);
+        if (!data) return whole;
+        const bool inside =
+            grown.contains(square.min_x, square.min_y) && grown.contains(square.max_x, square.max_y);
+        if (inside) {
+            low_m = std::min(low_m, double(data->min_m));
+            high_m = std::max(high_m, double(data->max_m));
+            continue;
+        }
+        const TexelRect texels =
+            intersected(map.texels_in(page, grown), TexelRect{0, 0, kPatchTexels, kPatchTexels});
+        for (int y = texels.y0; y < texels.y1; ++y)
+            for (int x = texels.x0; x < texels.x1; ++x) {
+                const double z_m = double(data->heights_m[size_t(y) * kPatchTexels + size_t(x)]);
+                low_m = std::min(low_m, z_m);
+                high_m = std::max(high_m, z_m);
+            }
+    }
+    if (!(low_m <= high_m)) return {};
+    glm::dvec2 least(kInfinity), most(-kInfinity);
+    for (int corner = 0; corner < 8; ++corner) {
+        const glm::dvec3 p(corner & 1 ? grown.max_x : grown.min_x, corner & 2 ? grown.max_y : grown.min_y,
+                           corner & 4 ? high_m : low_m);
+        const glm::dvec2 at =
+            (glm::dvec2(glm::dot(axes_.x, p), glm::dot(axes_.y, p)) - c.center_m) / c.half_m * 0.5 + 0.5;
+        least = glm::min(least, at);
+        most = glm::max(most, at);
+    }
+    // A texel more on each side for the rounding of floats.
+    const double side = texels_;
+    least = glm::clamp(glm::floor(least * side) - 1.0, -1.0, side + 1.0);
+    most = glm::clamp(glm::ceil(most * side) + 1.0, -1.0, side + 1.0);
+    return intersected(TexelRect{int(least.x), int(least.y), int(most.x), int(most.y)}, whole);
+}
+
+void ShadowCascades::place_dirt(const HeightMap& heights, std::span<const MapPage> pages,
+                                std::span<const WorldRect> rects) {
+    for (Cascade& c : cascades_) {
+        if (!c.valid) continue;
         for (const WorldRect& rect : rects) {
-            // The rectangle's disc in light space, for any height: compare across the light's x axis only,
-            // which is level.
-            const glm::dvec2 c = rect.center();
-            const double radius = std::hypot(rect.width(), rect.height()) * 0.5;
-            const double across = axes_.x.x * c.x + axes_.x.y * c.y;
-            cascade.dirty |= std::abs(across - cascade.center_m.x) < cascade.half_m + radius;
+            TexelRect part = covered(c, heights, pages, rect);
+            if (part.empty()) continue;
+            // Overlapping ones become one; so do all when there are many.
+            for (size_t i = c.dirty.size(); i-- > 0;)
+                if (c.dirty.size() >= kMostParts || !intersected(c.dirty[i], part).empty()) {
+                    part = united(part, c.dirty[i]);
+                    c.dirty.erase(c.dirty.begin() + std::ptrdiff_t(i));
+                    i = c.dirty.size();
+                }
+            c.dirty.push_back(part);
         }
     }
+}
+
+void ShadowCascades::on_dirt(std::span<const WorldRect> rects, const HeightMap& heights) {
+    place_dirt(heights, pages_, rects);  // where the old surface is
+    changed_.insert(changed_.end(), rects.begin(), rects.end());
 }
 
 glm::dvec2 ShadowCascades::snapped(const Cascade& c, const glm::dvec2& eye_m) const {
@@ -60,7 +129,7 @@ glm::dvec2 ShadowCascades::snapped(const Cascade& c, const glm::dvec2& eye_m) co
 
 bool ShadowCascades::is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_t cut_hash,
                               bool refine) const {
-    if (!c.valid || c.dirty) return true;
+    if (!c.valid) return true;
     // A still picture must not depend on how the camera came to its place.
     if (refine) return c.cut_hash != cut_hash || c.center_m != snapped(c, eye_m);
     if (c.cut_hash != cut_hash && update_ - c.drawn_in >= kCutPatience_frames) return true;
@@ -68,32 +137,48 @@ bool ShadowCascades::is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_
     return std::max(moved.x, moved.y) > c.half_m * kWander;
 }
 
-Status ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
-                            const HeightMap& heights, const glm::dvec3& camera_m, int index) {
+// `part` of the cascade's square; all of it: the cascade is placed anew.
+void ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
+                          const HeightMap& heights, const glm::dvec3& camera_m, int index,
+                          const TexelRect& part) {
     Cascade& c = cascades_[size_t(index)];
     const glm::dvec2 eye(glm::dot(axes_.x, camera_m), glm::dot(axes_.y, camera_m));
-    c.center_m = snapped(c, eye);
-    c.z_m = glm::dot(axes_.z, camera_m);
-    c.valid = true;
-    c.dirty = false;
-    c.cut_hash = patches.cut_hash;
-    c.drawn_in = update_;
+    const int side = int(texels_);
+    if (part == TexelRect{0, 0, side, side}) {
+        c.center_m = snapped(c, eye);
+        c.z_m = glm::dot(axes_.z, camera_m);
+        c.valid = true;
+        c.dirty.clear();
+        c.cut_hash = patches.cut_hash;
+        c.drawn_in = update_;
+    } else if (c.cut_hash != patches.cut_hash) {
+        c.cut_hash = kNoCut;  // a part is of another cut than the rest
+    }
 
     const glm::dvec2 center = c.center_m - eye;
+    const double depth = 0.5 + (glm::dot(axes_.z, camera_m) - c.z_m) / kDepthRange_m;
     const glm::dmat4 clip_from_rel = glm::transpose(
         glm::dmat4(glm::dvec4(axes_.x, -center.x) / c.half_m, glm::dvec4(axes_.y, -center.y) / c.half_m,
-                   glm::dvec4(axes_.z / kDepthRange_m, 0.5), glm::dvec4(0, 0, 0, 1)));
+                   glm::dvec4(axes_.z / kDepthRange_m, depth), glm::dvec4(0, 0, 0, 1)));
+    // The part fills the clip space of what is looked for in it.
+    const glm::dvec2 low(part.x0, part.y0), high(part.x1, part.y1);
+    const glm::dvec2 grow = double(side) / (high - low);
+    const glm::dvec2 shift = (double(side) - low - high) / (high - low);
+    const glm::dmat4 part_from_clip(glm::dvec4(grow.x, 0, 0, 0), glm::dvec4(0, grow.y, 0, 0),
+                                    glm::dvec4(0, 0, 1, 0), glm::dvec4(shift, 0, 1));
 
-    const int side = int(texels_), x = (index & 1) * side, y = (index >> 1) * side;
+    const int x = (index & 1) * side, y = (index >> 1) * side;
     commands.begin_rendering({atlas_.width(), atlas_.height()}, {},
                              {.view = atlas_.view(), .load = VK_ATTACHMENT_LOAD_OP_LOAD});
     const VkClearAttachment clear{VK_IMAGE_ASPECT_DEPTH_BIT, 0, {.depthStencil = {0.0f, 0}}};
-    const VkClearRect area{{{x, y}, {texels_, texels_}}, 0, 1};
-    vkCmdClearAttachments(commands.handle(), 1, &clear, 1, &area);
+    const VkRect2D area{{x + part.x0, y + part.y0}, {uint32_t(part.width()), uint32_t(part.height())}};
+    const VkClearRect cleared{area, 0, 1};
+    vkCmdClearAttachments(commands.handle(), 1, &clear, 1, &cleared);
     commands.set_viewport(float(x), float(y), float(side), float(side));
-    terrain.cmd_draw_shadow(commands, patches, heights, clip_from_rel, camera_m);
+    commands.set_scissor(area.offset.x, area.offset.y, area.extent.width, area.extent.height);
+    terrain.cmd_draw_shadow(commands, patches, heights, clip_from_rel, part_from_clip * clip_from_rel,
+                            camera_m);
     commands.end_rendering();
-    return {};
 }
 
 Status ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
@@ -111,23 +196,39 @@ Status ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, con
 
     const glm::dvec2 eye(glm::dot(axes_.x, camera_m), glm::dot(axes_.y, camera_m));
     ++update_;
-    drawn_ = 0;
+    drawn_ = parts_drawn_ = 0;
     settled_ = true;
+    place_dirt(heights, patches.pages, changed_);  // where the new surface is
+    changed_.clear();
+    pages_ = patches.pages;
     bool opened = false;
-    for (int i = 0; i < kCascadeCount; ++i) {
-        if (!is_stale(cascades_[size_t(i)], eye, patches.cut_hash, refine)) {
-            settled_ = settled_ && cascades_[size_t(i)].cut_hash == patches.cut_hash;
-            continue;
-        }
-        if (int(drawn_) >= budget) {
-            settled_ = false;
-            continue;
-        }
+    const auto draw_part = [&](int index, const TexelRect& part) {
         if (!opened) commands.use({{atlas_, gpu::Access::depth_target}});
         opened = true;
         const auto pass = commands.pass("shadow cascade", {{atlas_, gpu::Access::depth_target}});
-        LOAM_TRY(draw(commands, terrain, patches, heights, camera_m, i));
-        ++drawn_;
+        draw(commands, terrain, patches, heights, camera_m, index, part);
+    };
+    const int side = int(texels_);
+    for (int i = 0; i < kCascadeCount; ++i) {
+        Cascade& c = cascades_[size_t(i)];
+        int64_t dirty_texels = 0;
+        for (const TexelRect& part : c.dirty) dirty_texels += part.area();
+        const bool mostly_dirty = dirty_texels > int64_t(side) * side / 2;
+        if (mostly_dirty || is_stale(c, eye, patches.cut_hash, refine)) {
+            if (int(drawn_) < budget) {
+                draw_part(i, {0, 0, side, side});
+                ++drawn_;
+                continue;
+            }
+            settled_ = false;
+        }
+        // What has changed shows at once, in or out of turn.
+        if (!c.valid || mostly_dirty) continue;
+        for (const TexelRect& part : std::exchange(c.dirty, {})) {
+            draw_part(i, part);
+            ++parts_drawn_;
+        }
+        settled_ = settled_ && c.cut_hash == patches.cut_hash;
     }
 
     uniforms.light_x = glm::vec4(axes_.x, 0);

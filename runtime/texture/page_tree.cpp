@@ -21,8 +21,8 @@ void PageTree::set(int depth, int x, int y, uint32_t texel) {
     }
 }
 
-uint32_t PageTree::cell(int x, int y) const {
-    for (int depth = log2_width_; depth >= 0; --depth, x >>= 1, y >>= 1)
+uint32_t PageTree::shown(int depth, int x, int y) const {
+    for (; depth >= 0; --depth, x >>= 1, y >>= 1)
         if (const uint32_t texel = at(depth, x, y); texel != kNoPage) return texel;
     return kNoPage;
 }
@@ -33,33 +33,41 @@ void PageTree::touch_all() {
     for (size_t i = finest; i < nodes_.size(); ++i) nodes_[i].below_changed = false;  // nothing is below
 }
 
-void PageTree::take_fills(glm::ivec2 origin, std::vector<shared::IndirectionFill>& out) {
-    if (changed()) visit(0, 0, 0, kNoPage, false, origin, out);
+void PageTree::take_fills(glm::ivec2 origin, int size, std::vector<shared::IndirectionFill>& out) {
+    if (changed()) visit(0, 0, 0, kNoPage, false, {origin, size, &out});
 }
 
-// A square is written when all of it shows one page and that may have changed; otherwise its quarters are
-// looked at.
-void PageTree::visit(int depth, int x, int y, uint32_t inherited, bool inherited_changed, glm::ivec2 origin,
-                     std::vector<shared::IndirectionFill>& out) {
+void PageTree::write(int depth, int x, int y, int levels, uint32_t texel, const Target& target) const {
+    if (!target.out) return;
+    for (int finer = 0; finer < levels; ++finer) {
+        const int level = log2_width_ - depth - finer, side = 1 << finer;
+        const glm::ivec2 at =
+            shared::vt_level_origin(level, target.size) + (target.origin >> level) + glm::ivec2(x, y) * side;
+        target.out->push_back({at.x, at.y, side, texel});
+    }
+}
+
+// A square is written when what it shows may have changed: with all mips under it where nothing finer is
+// there, alone where its quarters have to be looked at.
+void PageTree::visit(int depth, int x, int y, uint32_t inherited, bool inherited_changed,
+                     const Target& target) {
     Node& here = node(depth, x, y);
     const bool changed = here.changed || (inherited_changed && here.texel == kNoPage);
     const bool below_changed = here.below_changed;
     const uint32_t shown = here.texel != kNoPage ? here.texel : inherited;
     here.changed = here.below_changed = false;
     if (!changed && !below_changed) return;
-    const int side = 1 << (log2_width_ - depth);
+    const auto quarters = [&](const Target& to) {
+        for (int i = 0; i < 4; ++i) visit(depth + 1, x * 2 + (i & 1), y * 2 + (i >> 1), shown, changed, to);
+    };
     if (here.below == 0) {
-        // Also where pages below went away: then only the flags of their nodes are left to clear.
-        out.push_back({origin.x + x * side, origin.y + y * side, side, shown});
-        if (below_changed) {
-            std::vector<shared::IndirectionFill> unused;
-            for (int i = 0; i < 4; ++i)
-                visit(depth + 1, x * 2 + (i & 1), y * 2 + (i >> 1), shown, false, origin, unused);
-        }
+        write(depth, x, y, log2_width_ - depth + 1, shown, target);
+        // Pages below went away: the flags of their nodes are left to clear.
+        if (below_changed) quarters({target.origin, target.size, nullptr});
         return;
     }
-    for (int i = 0; i < 4; ++i)
-        visit(depth + 1, x * 2 + (i & 1), y * 2 + (i >> 1), shown, changed, origin, out);
+    if (changed) write(depth, x, y, 1, shown, target);
+    quarters(target);
 }
 
 }  // namespace loam

@@ -1,8 +1,8 @@
-// The quad tree of one virtual image: which pages the GPU may use, and what each finest cell therefore shows.
-// A node holds the indirection texel of its page or nothing; a cell shows the finest page above it. What
-// changed since the last `take_fills` comes out as squares, disjoint by construction, so that a compute
-// shader may write them in any order. Source: Call of Duty talk, "Virtual Image Quad Tree", "Indirection
-// Texture".
+// The quad tree of one virtual image: which pages the GPU may use, and what each square of its page grid
+// therefore shows at each mip. A node holds the indirection texel of its page or nothing; a square shows its
+// own page or else the nearest above it. What changed since the last `take_fills` comes out as squares of
+// texels, disjoint by construction, so that a compute shader may write them in any order. Source: Call of
+// Duty talk, "Virtual Image Quad Tree", "Indirection Texture".
 #pragma once
 
 #include <cstdint>
@@ -23,14 +23,15 @@ class PageTree {
     // ancestor.
     void set(int depth, int x, int y, uint32_t texel);
     [[nodiscard]] uint32_t at(int depth, int x, int y) const { return node(depth, x, y).texel; }
-    // What a finest cell shows; kNoPage when nothing above it is there.
-    [[nodiscard]] uint32_t cell(int x, int y) const;
+    // What a square shows, itself or the nearest above it; kNoPage when there is nothing.
+    [[nodiscard]] uint32_t shown(int depth, int x, int y) const;
     [[nodiscard]] int page_count() const { return page_count_; }
 
     // Everything counts as changed: the image got a new place in the indirection texture.
     void touch_all();
-    // Appends the squares to write, shifted by the image's place.
-    void take_fills(glm::ivec2 origin, std::vector<shared::IndirectionFill>& out);
+    // Appends the squares to write in an indirection texture of `size` texels a side (texture_io.h), in which
+    // the image's mip 0 begins at `origin`, a multiple of its width.
+    void take_fills(glm::ivec2 origin, int size, std::vector<shared::IndirectionFill>& out);
     [[nodiscard]] bool changed() const { return nodes_[0].changed || nodes_[0].below_changed; }
 
   private:
@@ -46,8 +47,14 @@ class PageTree {
     }
     [[nodiscard]] Node& node(int depth, int x, int y) { return nodes_[index(depth, x, y)]; }
     [[nodiscard]] const Node& node(int depth, int x, int y) const { return nodes_[index(depth, x, y)]; }
-    void visit(int depth, int x, int y, uint32_t inherited, bool inherited_changed, glm::ivec2 origin,
-               std::vector<shared::IndirectionFill>& out);
+    struct Target {
+        glm::ivec2 origin;
+        int size;
+        std::vector<shared::IndirectionFill>* out;  // null: only flags are cleared
+    };
+    void visit(int depth, int x, int y, uint32_t inherited, bool inherited_changed, const Target& target);
+    // The squares of `levels` mips of a node, from its own on.
+    void write(int depth, int x, int y, int levels, uint32_t texel, const Target& target) const;
 
     int log2_width_;
     int page_count_ = 0;

@@ -38,13 +38,14 @@ Status VirtualTexture::Impl::make_resources() {
     Impl& t = *this;
     const uint32_t side = uint32_t(t.desc.pages_per_side);
     LOAM_TRY(assign(t.atlas, make_page_atlas(t.device, t.textures, side, side)));
-    LOAM_TRY(assign(t.indirection, gpu::Image::create(t.device, {.name = "indirection",
-                                                                 .format = VK_FORMAT_R32_UINT,
-                                                                 .width = uint32_t(t.desc.indirection_size),
-                                                                 .height = uint32_t(t.desc.indirection_size),
-                                                                 .usage = VK_IMAGE_USAGE_STORAGE_BIT |
-                                                                          VK_IMAGE_USAGE_SAMPLED_BIT |
-                                                                          VK_IMAGE_USAGE_TRANSFER_SRC_BIT})));
+    LOAM_TRY(assign(
+        t.indirection,
+        gpu::Image::create(t.device, {.name = "indirection",
+                                      .format = VK_FORMAT_R32_UINT,
+                                      .width = uint32_t(t.desc.indirection_size) * 3 / 2,
+                                      .height = uint32_t(t.desc.indirection_size),
+                                      .usage = VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_SAMPLED_BIT |
+                                               VK_IMAGE_USAGE_TRANSFER_SRC_BIT})));
     for (EyeState& eye : t.eyes) {
         LOAM_TRY(assign(eye.sector_table,
                         storage_buffer(t.device, "sector table", kSectorTableSide * kSectorTableSide * 4)));
@@ -114,8 +115,9 @@ Result<std::unique_ptr<VirtualTexture>> VirtualTexture::create(gpu::Device& devi
 
 void VirtualTexture::Impl::cmd_indirection(gpu::FrameRing& ring, gpu::Commands& commands) {
     std::vector<shared::IndirectionFill> fills;
-    sectors.default_tree().take_fills({0, 0}, fills);
-    for (LiveSector& sector : sectors.live()) sector.tree->take_fills(sector.origin, fills);
+    const int size = desc.indirection_size;
+    sectors.default_tree().take_fills({0, 0}, size, fills);
+    for (LiveSector& sector : sectors.live()) sector.tree->take_fills(sector.origin, size, fills);
     if (fills.empty()) return;
     changed_frame = frame;
     // One workgroup a fill: big squares are cut so that none is much longer than the others.
@@ -144,6 +146,7 @@ void VirtualTexture::Impl::cmd_eye(gpu::Commands& commands, const TextureView& v
     p.camera_offset_m = at.offset_m;
     p.table_origin = at.sector - kSectorTableSide / 2;
     p.default_log2_width = layout.default_log2_width;
+    p.indirection_size = desc.indirection_size;
     p.inv_atlas_pages = 1.0f / float(desc.pages_per_side);
     p.mip_bias = view.mip_bias;
     p.frame = uint32_t(frame);
@@ -357,13 +360,16 @@ VirtualTexture::Statistics VirtualTexture::statistics() const {
 
 std::vector<uint32_t> VirtualTexture::expected_indirection() const {
     const Impl& t = *impl_;
-    const int size = t.desc.indirection_size;
-    std::vector<uint32_t> texels(size_t(size) * size_t(size), kUnusedIndirection);
+    const int size = t.desc.indirection_size, width = size * 3 / 2;
+    std::vector<uint32_t> texels(size_t(width) * size_t(size), kUnusedIndirection);
     const auto write = [&](const PageTree& tree, glm::ivec2 origin) {
-        const int side = 1 << tree.log2_width();
-        for (int y = 0; y < side; ++y)
-            for (int x = 0; x < side; ++x)
-                texels[size_t(origin.y + y) * size_t(size) + size_t(origin.x + x)] = tree.cell(x, y);
+        for (int level = 0; level <= tree.log2_width(); ++level) {
+            const int depth = tree.log2_width() - level;
+            const glm::ivec2 at = shared::vt_level_origin(level, size) + (origin >> level);
+            for (int y = 0; y < 1 << depth; ++y)
+                for (int x = 0; x < 1 << depth; ++x)
+                    texels[size_t(at.y + y) * size_t(width) + size_t(at.x + x)] = tree.shown(depth, x, y);
+        }
     };
     write(t.sectors.default_tree(), {0, 0});
     for (const LiveSector& sector : t.sectors.live()) write(*sector.tree, sector.origin);

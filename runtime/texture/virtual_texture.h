@@ -169,8 +169,8 @@ class VirtualTexture {
     // Tests: every resident page composed again from nothing into scratch and compared with what is in the
     // atlas. Returns the number of pages that differ in any byte (all mips, all textures).
     Result<uint32_t> count_stale_pages(gpu::FrameRing& ring);
-    // Tests: what the CPU's quad trees say the indirection texture holds, row by row; places outside all
-    // images are kUnusedIndirection.
+    // Tests: what the CPU's quad trees say the indirection texture holds, row by row with all its mips;
+    // places outside all images are kUnusedIndirection.
     [[nodiscard]] std::vector<uint32_t> expected_indirection() const;
     // Tests: every page in a quad tree is the one its place holds, composed and of the generation that
     // entered. Empty: all is well.

@@ -12,8 +12,6 @@ namespace loam {
 namespace {
 
 constexpr size_t kInputLookahead = 24;  // index pages asked for ahead, of missing pages and of dirty ones
-// A page not wanted for so long, whose parent is, only shows texels too fine for the distance.
-constexpr uint64_t kTooFineFrames = 30;
 constexpr TexelRect kWholePage{0, 0, kPageTexels, kPageTexels};
 constexpr uint64_t kHiddenFrames = 8;  // a sector not seen for so long is hidden
 
@@ -231,14 +229,8 @@ void VirtualTexture::Impl::make_room() {
     }
     int shortage = int(missing.size()) - available;
     for (const int place : pool.retirable(frame)) {
-        const PagePool::Place& p = pool.place(place);
-        const int parent = p.page.depth > 0 ? pool.find(p.page.parent()) : -1;
-        const bool too_fine = parent >= 0 && pool.place(parent).last_requested == frame &&
-                              pool.place(parent).state == PagePool::State::usable &&
-                              p.last_requested + kTooFineFrames < frame;
-        if (shortage <= 0 && !too_fine) continue;
+        if (shortage-- <= 0) break;
         leave_tree(place);
-        --shortage;
     }
 }
 

@@ -42,17 +42,25 @@ vec3 atlas_color(vec2 at, int part, float side_px) {
 }
 
 vec3 indirection_color(vec2 at) {
-    int side = textureSize(vt_indirection, 0).x;
+    int side = vt.indirection_size;
     ivec2 texel = ivec2(at * float(side));
+    int level = 0;
+    if (texel.x >= side) {
+        level = 1;
+        while (level < 10 && texel.y >= side - (side >> level)) ++level;
+        texel -= vt_level_origin(level, side);
+        if (texel.x >= side >> level) return kBackground;
+    }
     // Outside of the images nothing is defined, so nothing is shown.
     for (int i = 0; squares[i].size > 0; ++i) {
         VtImageSquare square = squares[i];
-        ivec2 in_image = texel - ivec2(square.x, square.y);
-        if (min(in_image.x, in_image.y) < 0 || max(in_image.x, in_image.y) >= square.size) continue;
-        bool rim = min(in_image.x, in_image.y) == 0 || max(in_image.x, in_image.y) == square.size - 1;
-        uint word = texelFetch(vt_indirection, texel, 0).r;
+        int size = square.size >> level;
+        ivec2 in_image = texel - (ivec2(square.x, square.y) >> level);
+        if (size == 0 || min(in_image.x, in_image.y) < 0 || max(in_image.x, in_image.y) >= size) continue;
+        bool rim = min(in_image.x, in_image.y) == 0 || max(in_image.x, in_image.y) == size - 1;
+        uint word = texelFetch(vt_indirection, vt_level_origin(level, side) + texel, 0).r;
         vec3 color = word == kNoPage ? vec3(0.0) : hashed_color(word);
-        return rim && square.size > 8 ? mix(color, vec3(1.0), 0.6) : color;
+        return rim && size > 8 ? mix(color, vec3(1.0), 0.6) : color;
     }
     return kBackground;
 }
@@ -62,8 +70,9 @@ void main() {
     vec3 color = kBackground;
     float side = min(size.x, size.y);
     if (push.debug_view == kDebugIndirectionMap) {
-        vec2 at = in_square(0.5 * (size - side), side);
-        if (inside(at)) color = indirection_color(vec2(at.x, 1.0 - at.y));
+        float high = min(side, size.x / 1.5);
+        vec2 at = in_square(0.5 * (size - vec2(1.5, 1.0) * high), high);
+        if (inside(at * vec2(1.0 / 1.5, 1.0))) color = indirection_color(vec2(at.x, 1.0 - at.y));
     } else {
         // The first texture as large as it goes, the others beside it.
         float large = min(side, size.x / 1.5), small = 0.5 * large - 2.0;

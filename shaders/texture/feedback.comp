@@ -31,14 +31,14 @@ void main() {
         vec2 offset;
         vt_split(rel.xy / rel.w, sector, offset);
         VtPlace place = vt_place(sector, offset, surface.z + push.footprint_log2, surface.w + push.footprint_log2);
-        uint mip = uint(max(place.wanted, 0.0));
+        int mip = vt_level(place);
         uvec2 page = uvec2(place.cell) >> mip;
-        uint word = texelFetch(indirection, place.origin + place.cell, 0).r;
+        uint word = texelFetch(indirection, vt_indirection_texel(place), 0).r;
         // An image that is still too small for what the pixel wants counts as well, as far as any image could grow.
         float image_log2_texel = place.id != 0u ? vt.sector_log2_root - float(place.log2_width) : vt.default_log2_texel;
         float finest = vt.sector_log2_root - float(kMaxSectorLog2Width) - image_log2_texel;
         int coarser = clamp(int(word >> 16u & 0xffu) - int(floor(max(place.wanted, min(finest, 0.0)))), 0, 7);
-        value = uint(coarser) << kFeedbackCoarserShift | mip << kFeedbackMipShift | place.id << 16u | page.y << 8u | page.x;
+        value = uint(coarser) << kFeedbackCoarserShift | uint(mip) << kFeedbackMipShift | place.id << 16u | page.y << 8u | page.x;
     }
     values[cell.y * push.cells.x + cell.x] = value;
 }

@@ -15,12 +15,13 @@ LOAM_BEGIN_SHARED
 #define kProbeTaps 4      // at most so many in one page
 #define kTileSide_px 8
 
-// A probe is one look-up of a page, and its taps stay in that page. Why four taps do, with their spacing limited to kTapReach:
-// the outermost lies 1.5 spacings from the probe, 3 texels of the page's first mip at most, and a bilinear sample reads half a
-// texel further: 0.5 in the first mip, 1 in the second (in the first's texels). 3 + 1 = 4 = kPageBorder, and the border of the
-// second mip is as wide. (A little less than 2, so that rounding of coordinates cannot read the next page's first texel.)
-// The limit binds only where a page finer than wanted is shown: else a texel wanted is below two of the page's first mip, and
-// the spacing never above it.
+// A probe is one look-up of a page, and its taps stay in that page. Why four taps do, with their spacing
+// limited to kTapReach: the outermost lies 1.5 spacings from the probe, 3 texels of the page's first mip at
+// most, and a bilinear sample reads half a texel further: 0.5 in the first mip, 1 in the second (in the
+// first's texels). 3 + 1 = 4 = kPageBorder, and the border of the second mip is as wide. (A little less than
+// 2, so that rounding of coordinates cannot read the next page's first texel.) A texel wanted is below two of
+// the page's first mip, as no page finer than wanted is shown, and the spacing is never above it: the limit
+// binds only where the coarsest page there is is too fine.
 #ifndef kTapReach // tests widen it, to see the seams
 #define kTapReach 1.98f
 #endif

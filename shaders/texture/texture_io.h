@@ -1,13 +1,12 @@
 // The virtual texture as shaders see it.
 //
-// Indirection texel (R32_UINT), one a finest page of a virtual image:
-// | bits | meaning | encode |
-// | --- | --- | --- |
-// | 0–7 | physical page x | page units |
-// | 8–15 | physical page y | page units |
-// | 16–23 | mip of the page: 0 is the image's finest | |
-// | 24–31 | log2 of the quad tree's width at that page (its depth) | |
-// 0xffffffff: nothing resident (only before the first root page).
+// Indirection texel (R32_UINT), one a square of a virtual image's page grid at each mip: the finest page that
+// is resident and not finer than the square. The texture is 1.5 times as wide as high: mip 0 of all images,
+// and beside it the other mips one above the other (vt_level_origin), each an image's square shrunk with its
+// origin. | bits | meaning | encode | | --- | --- | --- | | 0–7 | physical page x | page units | | 8–15 |
+// physical page y | page units | | 16–23 | mip of the page: 0 is the image's finest | | | 24–31 | log2 of the
+// quad tree's width at that page (its depth) | | 0xffffffff: nothing resident (only before the first root
+// page).
 //
 // Feedback value (R32), page coordinates at that mip; 0xffffffff: no terrain:
 // | bits | meaning |
@@ -44,7 +43,7 @@ LOAM_BEGIN_SHARED
 #define kFeedbackHeight 136
 #define kFeedbackMipShift 24u
 #define kFeedbackCoarserShift 29u
-#define kMaxIndirectionSize 1024 // what a sector table entry can name
+#define kMaxIndirectionSize 1024  // texels a side of mip 0: what a sector table entry can name
 #define kMaxSectorLog2Width 8     // 256 x 256 pages on 64 m: 1.008 mm a texel
 #define kIndexPageBorder 4    // of index map pages (maps/index_map.h)
 #define kIndexPageTexels 136
@@ -56,6 +55,7 @@ struct VtParams {
     vec2 camera_offset_m;     // and where in it, [0, 64)
     ivec2 table_origin;       // sector of the table's first cell: camera_sector - 32
     int default_log2_width;   // of the default sector's image, in pages
+    int indirection_size;     // texels a side of the indirection texture's mip 0
     float inv_atlas_pages;    // 1 / pages a side of the physical texture
     float mip_bias;           // added to the wanted mip; positive is blurrier
     uint frame;
@@ -73,6 +73,11 @@ struct FeedbackPush {
     vec2 jitter;         // in a cell, [0, 1)
     float footprint_log2; // added to the g-buffer's footprints: where that is smaller than the picture it speaks for
 };
+
+// Where a mip of the page grids begins in the indirection texture; `size`: VtParams.indirection_size.
+LOAM_INLINE ivec2 vt_level_origin(int level, int size) {
+    return level == 0 ? ivec2(0, 0) : ivec2(size, size - (size >> (level - 1)));
+}
 
 // One dirty square of the indirection texture. The commands of a frame are disjoint: their order does not matter.
 struct IndirectionFill {

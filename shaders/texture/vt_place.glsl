@@ -12,7 +12,7 @@ layout(binding = VT_FIRST_SLOT + 0, scalar) readonly buffer VtParamsBuffer { VtP
 layout(binding = VT_FIRST_SLOT + 1, scalar) readonly buffer VtTable { uint vt_table[]; };
 
 struct VtPlace {
-    ivec2 origin;   // of the image in the indirection texture
+    ivec2 origin;   // of the image in the indirection texture's mip 0
     vec2 pages;     // position in the image, finest pages
     ivec2 cell;     // the finest page, inside the image
     float wanted;   // mip, not limited below, at most the image's coarsest
@@ -43,6 +43,16 @@ VtPlace vt_place(ivec2 sector_delta, vec2 offset_m, float log2_long, float log2_
     float wanted = log2_texel - place.log2_finest;
     place.wanted = wanted < coarsest ? wanted : coarsest;
     return place;
+}
+
+// The mip of the page grid that a place looks at: no page finer than wanted is shown, or texels would alias.
+int vt_level(VtPlace place) {
+    return clamp(int(floor(place.wanted)), 0, place.log2_width);
+}
+
+ivec2 vt_indirection_texel(VtPlace place) {
+    int level = vt_level(place);
+    return vt_level_origin(level, vt.indirection_size) + ((place.origin + place.cell) >> level);
 }
 
 // Position relative to the camera to sector and offset. rel_m: metres from the camera.

@@ -45,7 +45,7 @@ struct VtFound {
 
 VtFound vt_find(VtPlace place) {
     VtFound f;
-    f.word = texelFetch(vt_indirection, place.origin + place.cell, 0).r;
+    f.word = texelFetch(vt_indirection, vt_indirection_texel(place), 0).r;
     f.mip = min(f.word >> 16u & 0xffu, 31u);
     // Limited, as a probe may lie beside the map: there its edge goes on.
     f.in_page = clamp(place.pages * uintBitsToFloat((127u - f.mip) << 23u) - vec2(place.cell >> f.mip), 0.0, 1.0);

@@ -147,10 +147,12 @@ TEST_F(SeamTest, BordersOfPagesAreNoFartherFromTheReferenceThanTheirInside) {
     need(session->renderer());
     const std::span ways = std::span(all_ways).first(
         std::size(all_ways) - (session->device()->caps().profile == gpu::Profile::software ? 1 : 0));
-    // Turned so that the footprints' long axes lie across borders of both directions. The angle of view is a
-    // narrow one: as in a large picture, a page is some part of the distance to it.
+    // Turned so that the footprints' long axes lie across borders of both directions. In the narrow views a
+    // page is some part of the distance to it, as in a large picture; in the wide one pages span several
+    // mips.
     const Camera cameras[] = {Camera::look_at({200.3, 198.7, 1.6}, {208, 204, 0}, 0.25),
-                              Camera::look_at({301.1, 220.9, 1.6}, {294, 228, 0}, 0.25)};
+                              Camera::look_at({301.1, 220.9, 1.6}, {294, 228, 0}, 0.25),
+                              Camera::look_at({200.3, 198.7, 1.6}, {208, 204, 0}, 0.8)};
     std::vector<Seam> seams(ways.size());
     Seam spoilt;
     std::vector<double> decibels(ways.size());

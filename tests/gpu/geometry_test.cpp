@@ -124,7 +124,8 @@ class Scene {
         if (as_shadow) {
             const auto pass = commands.pass("shadow", {{shadow, Access::depth_target}});
             commands.begin_rendering({kWidth, kHeight}, {}, depth_target);
-            terrain.cmd_draw_shadow(commands, picture.patches, *heights, view.clip_from_rel, view.camera_m);
+            terrain.cmd_draw_shadow(commands, picture.patches, *heights, view.clip_from_rel,
+                                    view.clip_from_rel, view.camera_m);
             commands.end_rendering();
         } else {
             const auto pass = commands.pass("prepass", {{depth, Access::depth_target},

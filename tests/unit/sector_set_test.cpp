@@ -120,22 +120,27 @@ TEST(SectorSet, WhereIdsAreShortSeenSectorsComeFirst) {
 // The indirection texture as the shader makes it.
 struct Mirror {
     int side;
-    std::vector<uint32_t> texels;
+    std::vector<uint32_t> texels;  // side high, 1.5 times as wide
+    [[nodiscard]] int width() const { return side * 3 / 2; }
     void apply(SectorSet& sectors, bool lose_one) {
         std::vector<shared::IndirectionFill> fills;
-        sectors.default_tree().take_fills({0, 0}, fills);
-        for (LiveSector& s : sectors.live()) s.tree->take_fills(s.origin, fills);
+        sectors.default_tree().take_fills({0, 0}, side, fills);
+        for (LiveSector& s : sectors.live()) s.tree->take_fills(s.origin, side, fills);
         if (lose_one && fills.size() > 2) fills.erase(fills.begin() + 1);
         for (const auto& f : fills)
             for (int y = 0; y < f.size; ++y)
-                for (int x = 0; x < f.size; ++x) texels[size_t((f.y + y) * side + f.x + x)] = f.value;
+                for (int x = 0; x < f.size; ++x) texels[size_t((f.y + y) * width() + f.x + x)] = f.value;
     }
     [[nodiscard]] int differing(const SectorSet& sectors) const {
         int wrong = 0;
         const auto compare = [&](const PageTree& tree, glm::ivec2 origin) {
-            for (int y = 0; y < 1 << tree.log2_width(); ++y)
-                for (int x = 0; x < 1 << tree.log2_width(); ++x)
-                    wrong += texels[size_t((origin.y + y) * side + origin.x + x)] != tree.cell(x, y);
+            for (int level = 0; level <= tree.log2_width(); ++level) {
+                const int depth = tree.log2_width() - level;
+                const glm::ivec2 at = shared::vt_level_origin(level, side) + (origin >> level);
+                for (int y = 0; y < 1 << depth; ++y)
+                    for (int x = 0; x < 1 << depth; ++x)
+                        wrong += texels[size_t((at.y + y) * width() + at.x + x)] != tree.shown(depth, x, y);
+            }
         };
         compare(sectors.default_tree(), {0, 0});
         for (const LiveSector& s : sectors.live()) compare(*s.tree, s.origin);
@@ -155,7 +160,7 @@ Traffic random_traffic(int steps, bool lose_fills, int log2_size) {
         return std::uniform_real_distribution<double>(low, high)(random);
     };
     SectorSet sectors(desc(log2_size, 40));
-    Mirror mirror{1 << log2_size, std::vector<uint32_t>(size_t(1) << (2 * log2_size), 0xdeadbeefu)};
+    Mirror mirror{1 << log2_size, std::vector<uint32_t>(size_t(3) << (2 * log2_size - 1), 0xdeadbeefu)};
     const WorldRect bounds{0, 0, 2048, 2048};
     glm::dvec3 eye(700, 700, 10);
     Traffic traffic;

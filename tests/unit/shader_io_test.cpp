@@ -107,11 +107,13 @@ TEST(ShaderIo, EncodePush) {
 }
 
 TEST(ShaderIo, VtParams) {
-    expect_layout("VtParams", sizeof(shared::VtParams),
-                  {AT(VtParams, camera_sector), AT(VtParams, camera_offset_m), AT(VtParams, table_origin),
-                   AT(VtParams, default_log2_width), AT(VtParams, inv_atlas_pages),
-                   AT(VtParams, mip_bias), AT(VtParams, frame), AT(VtParams, flags), AT(VtParams, default_pages_per_sector),
-                   AT(VtParams, default_log2_texel), AT(VtParams, sector_log2_root), AT(VtParams, short_share), AT(VtParams, log2_taps)});
+    expect_layout(
+        "VtParams", sizeof(shared::VtParams),
+        {AT(VtParams, camera_sector), AT(VtParams, camera_offset_m), AT(VtParams, table_origin),
+         AT(VtParams, default_log2_width), AT(VtParams, indirection_size), AT(VtParams, inv_atlas_pages),
+         AT(VtParams, mip_bias), AT(VtParams, frame), AT(VtParams, flags),
+         AT(VtParams, default_pages_per_sector), AT(VtParams, default_log2_texel),
+         AT(VtParams, sector_log2_root), AT(VtParams, short_share), AT(VtParams, log2_taps)});
 }
 
 TEST(ShaderIo, FeedbackPush) {

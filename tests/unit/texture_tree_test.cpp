@@ -14,29 +14,35 @@ using namespace loam;
 // What indirection.comp does; counts writes a texel so that overlapping squares show.
 struct Table {
     explicit Table(int side)
-        : side(side), texels(size_t(side) * size_t(side), 0x12345678u), writes(texels.size(), 0) {}
+        : side(side),
+          width(side * 3 / 2),
+          texels(size_t(side) * size_t(width), 0x12345678u),
+          writes(texels.size(), 0) {}
     void fill(const std::vector<shared::IndirectionFill>& fills) {
         std::fill(writes.begin(), writes.end(), 0);
         for (const auto& f : fills)
             for (int y = f.y; y < f.y + f.size; ++y)
                 for (int x = f.x; x < f.x + f.size; ++x) {
-                    texels[size_t(y) * size_t(side) + size_t(x)] = f.value;
-                    ++writes[size_t(y) * size_t(side) + size_t(x)];
+                    texels[size_t(y) * size_t(width) + size_t(x)] = f.value;
+                    ++writes[size_t(y) * size_t(width) + size_t(x)];
                 }
     }
     [[nodiscard]] int most_writes() const { return *std::max_element(writes.begin(), writes.end()); }
-    int side;
+    int side, width;
     std::vector<uint32_t> texels;
     std::vector<int> writes;
 };
 
 int differing_cells(const PageTree& tree, const Table& table, glm::ivec2 origin) {
     int count = 0;
-    const int side = 1 << tree.log2_width();
-    for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; ++x)
-            count += table.texels[size_t(origin.y + y) * size_t(table.side) + size_t(origin.x + x)] !=
-                     tree.cell(x, y);
+    for (int level = 0; level <= tree.log2_width(); ++level) {
+        const int depth = tree.log2_width() - level;
+        const glm::ivec2 at = shared::vt_level_origin(level, table.side) + (origin >> level);
+        for (int y = 0; y < 1 << depth; ++y)
+            for (int x = 0; x < 1 << depth; ++x)
+                count += table.texels[size_t(at.y + y) * size_t(table.width) + size_t(at.x + x)] !=
+                         tree.shown(depth, x, y);
+    }
     return count;
 }
 
@@ -56,7 +62,7 @@ int random_traffic(int steps, bool lose) {
         tree.set(depth, x, y, random() % 3 == 0 ? kNoPage : uint32_t(random() & 0xffffff));
         if (random() % 4 != 0) continue;
         std::vector<shared::IndirectionFill> fills;
-        tree.take_fills(origin, fills);
+        tree.take_fills(origin, table.side, fills);
         if (lose && !fills.empty()) fills.pop_back();
         table.fill(fills);
         EXPECT_LE(table.most_writes(), 1) << "squares overlap";
@@ -79,24 +85,50 @@ TEST(PageTree, NothingChangedNothingWritten) {
     tree.set(0, 0, 0, 1);
     tree.set(4, 3, 9, 2);
     std::vector<shared::IndirectionFill> fills;
-    tree.take_fills({0, 0}, fills);
+    tree.take_fills({0, 0}, 16, fills);
     EXPECT_FALSE(fills.empty());
     fills.clear();
     tree.set(4, 3, 9, 2);
-    tree.take_fills({0, 0}, fills);
+    tree.take_fills({0, 0}, 16, fills);
     EXPECT_TRUE(fills.empty());
 }
 
 TEST(PageTree, AHoleShowsTheAncestor) {
     PageTree tree(3);
-    EXPECT_EQ(tree.cell(5, 5), kNoPage);
+    EXPECT_EQ(tree.shown(3, 5, 5), kNoPage);
     tree.set(0, 0, 0, 10);
     tree.set(3, 5, 5, 13);
-    EXPECT_EQ(tree.cell(5, 5), 13u);
-    EXPECT_EQ(tree.cell(4, 5), 10u);
+    EXPECT_EQ(tree.shown(3, 5, 5), 13u);
+    EXPECT_EQ(tree.shown(3, 4, 5), 10u);
     tree.set(0, 0, 0, kNoPage);
-    EXPECT_EQ(tree.cell(4, 5), kNoPage);
+    EXPECT_EQ(tree.shown(3, 4, 5), kNoPage);
     EXPECT_EQ(tree.page_count(), 1);
+}
+
+TEST(PageTree, AMipShowsNoFinerPage) {
+    PageTree tree(3);
+    tree.set(0, 0, 0, 10);
+    tree.set(3, 5, 5, 13);
+    EXPECT_EQ(tree.shown(2, 2, 2), 10u);
+    tree.set(1, 1, 1, 11);
+    EXPECT_EQ(tree.shown(2, 2, 2), 11u);
+    EXPECT_EQ(tree.shown(0, 0, 0), 10u);
+    EXPECT_EQ(tree.shown(3, 5, 5), 13u);
+}
+
+TEST(IndirectionMips, LieBesideMipZeroAndApart) {
+    constexpr int kSize = 64;
+    std::vector<int> covered(size_t(kSize) * kSize * 3 / 2, 0);
+    for (int level = 0; kSize >> level > 0; ++level) {
+        const glm::ivec2 at = shared::vt_level_origin(level, kSize);
+        for (int y = 0; y < kSize >> level; ++y)
+            for (int x = 0; x < kSize >> level; ++x) {
+                ASSERT_LT(at.x + x, kSize * 3 / 2);
+                ASSERT_LT(at.y + y, kSize);
+                ++covered[size_t(at.y + y) * (kSize * 3 / 2) + size_t(at.x + x)];
+            }
+    }
+    EXPECT_EQ(*std::max_element(covered.begin(), covered.end()), 1);
 }
 
 TEST(PageTree, TouchingWritesEveryCellAgain) {
@@ -105,10 +137,10 @@ TEST(PageTree, TouchingWritesEveryCellAgain) {
     tree.set(2, 1, 3, 2);
     tree.set(4, 15, 0, 3);
     std::vector<shared::IndirectionFill> fills;
-    tree.take_fills({0, 0}, fills);
+    tree.take_fills({0, 0}, 16, fills);
     tree.touch_all();
     fills.clear();
-    tree.take_fills({0, 0}, fills);
+    tree.take_fills({0, 0}, 16, fills);
     Table table(16);
     table.fill(fills);
     EXPECT_EQ(differing_cells(tree, table, {0, 0}), 0);
