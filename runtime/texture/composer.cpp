@@ -330,13 +330,16 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
 
 Status Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch) {
     DecalList list;
+    glm::ivec2 used(0);
     {
         const auto lock = document_.read_lock();
-        for (const Placed& placed : batch)
+        for (const Placed& placed : batch) {
             add_decals(document_, layers_, layout_, placed.job.page, placed.job.rect, placed.rect.scratch_min,
                        list);
+            used = glm::max(used, placed.rect.scratch_min + placed.rect.rect_size);
+        }
     }
-    return decals_->cmd_record(ring, commands, list, layers_, scratch_);
+    return decals_->cmd_record(ring, commands, list, layers_, scratch_, {uint32_t(used.x), uint32_t(used.y)});
 }
 
 void Composer::cmd_encode(gpu::Commands& commands, const Work& work) {

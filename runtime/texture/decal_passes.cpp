@@ -97,7 +97,7 @@ Status DecalPasses::warm_up(const Document& document, const LayerSet& layers) {
 }
 
 Status DecalPasses::cmd_record(gpu::FrameRing& ring, gpu::Commands& commands, const DecalList& list,
-                               LayerSet& layers, gpu::Image& scratch) {
+                               LayerSet& layers, gpu::Image& scratch, VkExtent2D used) {
     if (list.marks.empty() && list.paints.empty()) return {};
     const Uploads up{upload(ring, list.marks), upload(ring, list.paints), upload(ring, list.segments),
                      upload(ring, list.heights_m)};
@@ -114,8 +114,9 @@ Status DecalPasses::cmd_record(gpu::FrameRing& ring, gpu::Commands& commands, co
                           {layers.normal_gloss_occlusion, Access::fragment_sampled},
                           {layers.metalness, Access::fragment_sampled}});
         auto pass = commands.pass(kPassNames[which], {{scratch, Access::color_target}});
-        commands.begin_rendering({kScratchWidth, kScratchHeight}, targets);
+        commands.begin_rendering(used, targets);
         commands.set_viewport(0, 0, kScratchWidth, kScratchHeight);
+        commands.set_scissor(0, 0, used.width, used.height);
         for (const DecalRun& run : list.runs[which])
             for (size_t part = run.even ? 0 : 1; part < (run.even ? 1 : kParts); ++part) {
                 auto made = pipeline(run.kind, part, layers);

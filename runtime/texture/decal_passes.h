@@ -22,8 +22,9 @@ class DecalPasses {
     // Makes the pipelines of craters and footprints, which come while playing, and those that the document's
     // operators need, so that no frame waits for them.
     Status warm_up(const Document& document, const LayerSet& layers);
+    // used: of the scratch image; nothing is drawn outside.
     Status cmd_record(gpu::FrameRing& ring, gpu::Commands& commands, const DecalList& list, LayerSet& layers,
-                      gpu::Image& scratch);
+                      gpu::Image& scratch, VkExtent2D used);
 
   private:
     // Targets have one weight each: channels of different shares are drawn part by part (paint.frag).
