@@ -460,10 +460,10 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
 
     // Shadows: only the cascades that something has changed in.
     if (r.desc.shadows)
-        LOAM_TRY(r.shadows->update(commands, *r.terrain, r.patches, *r.heights, camera.position_m,
-                                   sun_direction({.azimuth_rad = r.document.settings().sun_azimuth_rad,
-                                                  .elevation_rad = r.document.settings().sun_elevation_rad}),
-                                   r.defaults.shadow_budget, settings.at_rest, u));
+        r.shadows->update(commands, *r.terrain, r.patches, *r.heights, camera.position_m,
+                          sun_direction({.azimuth_rad = r.document.settings().sun_azimuth_rad,
+                                         .elevation_rad = r.document.settings().sun_elevation_rad}),
+                          r.defaults.shadow_budget, settings.at_rest, u);
 
     const gpu::UploadSlice slice = ring.upload(sizeof(u));
     *slice.as<shared::FrameUniforms>() = u;

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "shaders/geometry/geometry_io.h"
 
@@ -23,6 +22,8 @@ constexpr double kDepthRange_m = 65536.0;
 // A tap reads at most 1.2 * |(0.4, 1)| + sqrt(2) texels beside its point (lighting.glsl), and a plane rises there by that
 // times the tangent of its angle to the light. Moved along its normal by this times the sine it lies above its own texels.
 constexpr float kNormalBias_texels = 2.75f;
+// Changed ground less wide than this in a cascade waits for more, for rest, or for kCutPatience_frames.
+constexpr double kUrgent_texels = 4;
 constexpr size_t kMostParts = 8;  // of a cascade, drawn one by one
 constexpr uint64_t kNoCut = 0;    // no set of patches has it, or one in 2^64
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -105,6 +106,8 @@ void ShadowCascades::place_dirt(const HeightMap& heights, std::span<const MapPag
         for (const WorldRect& rect : rects) {
             TexelRect part = covered(c, heights, pages, rect);
             if (part.empty()) continue;
+            if (c.dirty.empty()) c.dirty_since = update_;
+            c.urgent |= std::max(rect.width(), rect.height()) >= kUrgent_texels * 2.0 * c.half_m / texels_;
             // Overlapping ones become one; so do all when there are many.
             for (size_t i = c.dirty.size(); i-- > 0;)
                 if (c.dirty.size() >= kMostParts || !intersected(c.dirty[i], part).empty()) {
@@ -137,10 +140,10 @@ bool ShadowCascades::is_stale(const Cascade& c, const glm::dvec2& eye_m, uint64_
     return std::max(moved.x, moved.y) > c.half_m * kWander;
 }
 
-// `part` of the cascade's square; all of it: the cascade is placed anew.
 void ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
-                          const HeightMap& heights, const glm::dvec3& camera_m, int index,
-                          const TexelRect& part) {
+                          const HeightMap& heights, const glm::dvec3& camera_m, const Part& which) {
+    const int index = which.index;
+    const TexelRect& part = which.texels;
     Cascade& c = cascades_[size_t(index)];
     const glm::dvec2 eye(glm::dot(axes_.x, camera_m), glm::dot(axes_.y, camera_m));
     const int side = int(texels_);
@@ -149,6 +152,7 @@ void ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const P
         c.z_m = glm::dot(axes_.z, camera_m);
         c.valid = true;
         c.dirty.clear();
+        c.urgent = false;
         c.cut_hash = patches.cut_hash;
         c.drawn_in = update_;
     } else if (c.cut_hash != patches.cut_hash) {
@@ -168,8 +172,6 @@ void ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const P
                                     glm::dvec4(0, 0, 1, 0), glm::dvec4(shift, 0, 1));
 
     const int x = (index & 1) * side, y = (index >> 1) * side;
-    commands.begin_rendering({atlas_.width(), atlas_.height()}, {},
-                             {.view = atlas_.view(), .load = VK_ATTACHMENT_LOAD_OP_LOAD});
     const VkClearAttachment clear{VK_IMAGE_ASPECT_DEPTH_BIT, 0, {.depthStencil = {0.0f, 0}}};
     const VkRect2D area{{x + part.x0, y + part.y0}, {uint32_t(part.width()), uint32_t(part.height())}};
     const VkClearRect cleared{area, 0, 1};
@@ -178,12 +180,44 @@ void ShadowCascades::draw(gpu::Commands& commands, TerrainPass& terrain, const P
     commands.set_scissor(area.offset.x, area.offset.y, area.extent.width, area.extent.height);
     terrain.cmd_draw_shadow(commands, patches, heights, clip_from_rel, part_from_clip * clip_from_rel,
                             camera_m);
-    commands.end_rendering();
 }
 
-Status ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
-                              const HeightMap& heights, const glm::dvec3& camera_m, const glm::dvec3& to_sun,
-                              int budget, bool refine, shared::FrameUniforms& uniforms) {
+// Cascades that are stale, within the budget, and of the others what has changed.
+std::vector<ShadowCascades::Part> ShadowCascades::choose(const glm::dvec2& eye_m, uint64_t cut_hash,
+                                                         int budget, bool refine) {
+    std::vector<Part> parts;
+    drawn_ = parts_drawn_ = 0;
+    settled_ = true;
+    const int side = int(texels_);
+    for (int i = 0; i < kCascadeCount; ++i) {
+        Cascade& c = cascades_[size_t(i)];
+        int64_t dirty_texels = 0;
+        for (const TexelRect& part : c.dirty) dirty_texels += part.area();
+        const bool mostly_dirty = dirty_texels > int64_t(side) * side / 2;
+        if (mostly_dirty || is_stale(c, eye_m, cut_hash, refine)) {
+            if (int(drawn_) < budget) {
+                parts.push_back({i, {0, 0, side, side}});
+                ++drawn_;
+                continue;
+            }
+            settled_ = false;
+        }
+        if (!c.valid || mostly_dirty) continue;
+        // What has changed shows at once, in or out of turn.
+        if (refine || c.urgent || update_ - c.dirty_since >= kCutPatience_frames) {
+            for (const TexelRect& part : c.dirty) parts.push_back({i, part});
+            parts_drawn_ += uint32_t(c.dirty.size());
+            c.dirty.clear();
+            c.urgent = false;
+        }
+        settled_ = settled_ && c.dirty.empty() && c.cut_hash == cut_hash;
+    }
+    return parts;
+}
+
+void ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
+                            const HeightMap& heights, const glm::dvec3& camera_m, const glm::dvec3& to_sun,
+                            int budget, bool refine, shared::FrameUniforms& uniforms) {
     if (glm::dot(to_sun, axes_.z) < 1.0 - 1e-12) {
         axes_.z = to_sun;
         // The light's x axis is level, so that height moves a point along y and z only.
@@ -196,39 +230,15 @@ Status ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, con
 
     const glm::dvec2 eye(glm::dot(axes_.x, camera_m), glm::dot(axes_.y, camera_m));
     ++update_;
-    drawn_ = parts_drawn_ = 0;
-    settled_ = true;
     place_dirt(heights, patches.pages, changed_);  // where the new surface is
     changed_.clear();
     pages_ = patches.pages;
-    bool opened = false;
-    const auto draw_part = [&](int index, const TexelRect& part) {
-        if (!opened) commands.use({{atlas_, gpu::Access::depth_target}});
-        opened = true;
-        const auto pass = commands.pass("shadow cascade", {{atlas_, gpu::Access::depth_target}});
-        draw(commands, terrain, patches, heights, camera_m, index, part);
-    };
-    const int side = int(texels_);
-    for (int i = 0; i < kCascadeCount; ++i) {
-        Cascade& c = cascades_[size_t(i)];
-        int64_t dirty_texels = 0;
-        for (const TexelRect& part : c.dirty) dirty_texels += part.area();
-        const bool mostly_dirty = dirty_texels > int64_t(side) * side / 2;
-        if (mostly_dirty || is_stale(c, eye, patches.cut_hash, refine)) {
-            if (int(drawn_) < budget) {
-                draw_part(i, {0, 0, side, side});
-                ++drawn_;
-                continue;
-            }
-            settled_ = false;
-        }
-        // What has changed shows at once, in or out of turn.
-        if (!c.valid || mostly_dirty) continue;
-        for (const TexelRect& part : std::exchange(c.dirty, {})) {
-            draw_part(i, part);
-            ++parts_drawn_;
-        }
-        settled_ = settled_ && c.cut_hash == patches.cut_hash;
+    if (const std::vector<Part> parts = choose(eye, patches.cut_hash, budget, refine); !parts.empty()) {
+        const auto pass = commands.pass("shadow cascades", {{atlas_, gpu::Access::depth_target}});
+        commands.begin_rendering({atlas_.width(), atlas_.height()}, {},
+                                 {.view = atlas_.view(), .load = VK_ATTACHMENT_LOAD_OP_LOAD});
+        for (const Part& part : parts) draw(commands, terrain, patches, heights, camera_m, part);
+        commands.end_rendering();
     }
 
     uniforms.light_x = glm::vec4(axes_.x, 0);
@@ -243,7 +253,6 @@ Status ShadowCascades::update(gpu::Commands& commands, TerrainPass& terrain, con
         uniforms.cascade_depth[i] =
             glm::vec4(float(1.0 / kDepthRange_m), texel, texel * kNormalBias_texels, c.valid ? 1.0f : 0.0f);
     }
-    return {};
 }
 
 }  // namespace loam

@@ -26,9 +26,9 @@ class ShadowCascades {
     // Decides which cascades are stale, draws them (at most `budget`, nearest first) and fills the uniforms.
     // `refine`: also draw cascades again that are off centre or show another cut of the ground than the
     // picture: a still picture must not depend on how the camera came to its place.
-    Status update(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
-                  const HeightMap& heights, const glm::dvec3& camera_m, const glm::dvec3& to_sun, int budget,
-                  bool refine, shared::FrameUniforms& uniforms);
+    void update(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
+                const HeightMap& heights, const glm::dvec3& camera_m, const glm::dvec3& to_sun, int budget,
+                bool refine, shared::FrameUniforms& uniforms);
 
     [[nodiscard]] gpu::Image& atlas() { return atlas_; }
     [[nodiscard]] const gpu::Sampler& sampler() const { return sampler_; }
@@ -41,6 +41,8 @@ class ShadowCascades {
     struct Cascade {
         bool valid = false;
         std::vector<TexelRect> dirty;  // of its own square
+        bool urgent = false;           // some of it is wide enough to be seen
+        uint64_t dirty_since = 0;      // which update
         glm::dvec2 center_m{0};  // light space of the world
         double z_m = 0;          // light-space height of depth 0.5
         double half_m = 0;
@@ -60,8 +62,15 @@ class ShadowCascades {
                                     std::span<const MapPage> pages, const WorldRect& rect) const;
     void place_dirt(const HeightMap& heights, std::span<const MapPage> pages,
                     std::span<const WorldRect> rects);
+    // Of a cascade's square; all of it: the cascade is placed anew.
+    struct Part {
+        int index;
+        TexelRect texels;
+    };
+    [[nodiscard]] std::vector<Part> choose(const glm::dvec2& eye_m, uint64_t cut_hash, int budget,
+                                           bool refine);
     void draw(gpu::Commands& commands, TerrainPass& terrain, const PatchSet& patches,
-              const HeightMap& heights, const glm::dvec3& camera_m, int index, const TexelRect& part);
+              const HeightMap& heights, const glm::dvec3& camera_m, const Part& part);
 
     gpu::Image atlas_;
     gpu::Sampler sampler_;
