@@ -64,6 +64,7 @@ int pages_per_side(Quality quality) {
 }
 
 // Outside the frustum the ground only casts shadows: tuned so that half the cache serves what is seen.
+constexpr int kGrazingLevels = 4;  // of the index map, that direct shading asks for beside the finest
 constexpr double kHiddenShare = 0.4;
 
 constexpr double kFrameGoal_ms = 33;  // while someone works
@@ -261,11 +262,16 @@ void Renderer::Impl::request_direct_pages(double pixels_per_radian, double footp
         const double near = std::max(rect.distance(eye.x, eye.y), 1.0);
         const double wanted =
             std::floor(std::log2(near / pixels_per_radian / map.desc().spacing_m) + 1.0 + footprint_bias);
-        const int level = int(std::clamp(wanted, 0.0, double(map.desc().level_count - 1)));
-        const double page = map.page_size_m(level);
-        for (int y = int(rect.min_y / page); y <= int(rect.max_y / page); ++y)
-            for (int x = int(rect.min_x / page); x <= int(rect.max_x / page); ++x)
-                indices->request({level, x, y}, float(1.0 / near));
+        const int finest = int(std::clamp(wanted, 0.0, double(map.desc().level_count - 1)));
+        // Where the ground is seen at a grazing angle a pixel covers more of it, and a level that is not
+        // there would be taken from a coarser one.
+        const int coarsest = std::min(finest + kGrazingLevels, map.desc().level_count - 1);
+        for (int level = finest; level <= coarsest; ++level) {
+            const double page = map.page_size_m(level);
+            for (int y = int(rect.min_y / page); y <= int(rect.max_y / page); ++y)
+                for (int x = int(rect.min_x / page); x <= int(rect.max_x / page); ++x)
+                    indices->request({level, x, y}, float((1 + level - finest) / near));
+        }
     }
 }
 
