@@ -75,10 +75,12 @@ def test_a_drift_of_a_millimetre_is_as_sharp_and_steady_far_away(large, filter):
         for offset in (0.0, FAR_M):
             make_scene(p, PLACE_M + offset, PLACE_M + offset)
     figures = {}
+    # The horizon is in row 31: rows from 36 on show the scene alone, not the kilometres beyond it that only one place has.
+    scene = slice(36, None)
     for offset in (0.0, FAR_M):
         at = PLACE_M + offset
         with loam.open(str(large), read_only=True) as p:
-            pictures, truths = ([p.render((at - 15 + k * 0.001, at - 28, 101.6, 20, -14), size=(192, 108), **how)
+            pictures, truths = ([p.render((at - 15 + k * 0.001, at - 28, 101.6, 20, -14), size=(192, 108), **how)[scene]
                                  for k in range(3)] for how in ({"filter": filter}, {"reference": True}))
             assert p.stats()["settled"]
         figures[offset] = {
@@ -88,12 +90,12 @@ def test_a_drift_of_a_millimetre_is_as_sharp_and_steady_far_away(large, filter):
             "its own": [np.abs(a.astype(int) - b).mean() for a, b in zip(truths, truths[1:])]}
         print(offset, figures[offset])
     near, far = figures[0.0], figures[FAR_M]
-    np.testing.assert_allclose(far["error"], near["error"], atol=0.1)
-    np.testing.assert_allclose(far["sharp"], near["sharp"], rtol=0.01)
+    np.testing.assert_allclose(far["error"], near["error"], atol=0.02)
+    np.testing.assert_allclose(far["sharp"], near["sharp"], rtol=0.002)
     # Every step is seen, and none is larger than elsewhere.
     assert min(near["step"] + far["step"]) > 0
-    np.testing.assert_allclose(far["step"], near["step"], rtol=0.1)
-    np.testing.assert_allclose(far["its own"], near["its own"], rtol=0.1)
+    np.testing.assert_allclose(far["step"], near["step"], rtol=0.02)
+    np.testing.assert_allclose(far["its own"], near["its own"], rtol=0.02)
 
 
 # From level ground and from a slope of the crater, where triangles of 2 m lie up to 0.2 m beside the queries' ground.
