@@ -75,7 +75,7 @@ def test_a_drift_of_a_millimetre_is_as_sharp_and_steady_far_away(large, filter):
         for offset in (0.0, FAR_M):
             make_scene(p, PLACE_M + offset, PLACE_M + offset)
     figures = {}
-    # The horizon is in row 31: rows from 36 on show the scene alone, not the kilometres beyond it that only one place has.
+    # The horizon is in row 29: rows from 36 on show the scene alone, not the kilometres beyond it that only one place has.
     scene = slice(36, None)
     for offset in (0.0, FAR_M):
         at = PLACE_M + offset
