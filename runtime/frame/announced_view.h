@@ -21,8 +21,10 @@ struct AnnouncedView {
     glm::uvec2 size{0};  // of the small picture
     float footprint_log2 = 0;
 
-    // Selects the ground and requests its height pages; before HeightMap::update.
-    void prepare(HeightMap& heights, glm::uvec2 extent, double split_distance);
+    // Selects the ground and requests its height pages; before HeightMap::update. picture_px: of the picture
+    // that is rendered now, as the first at the new place will be: one of another size has other sectors
+    // live, and wants other pages.
+    void prepare(HeightMap& heights, glm::uvec2 picture_px, double split_distance);
 };
 
 // Depth, stencil, geometric normal and footprint of a set of patches, into the targets.

@@ -431,8 +431,8 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     std::vector<SectorDistance> near =
         sector_distances(r.patches, *r.heights, r.texture().live_radius_m(pixels_per_radian, 0));
     if (r.announced) {
-        r.announced->prepare(*r.heights, extent, split);
-        const double there = extent.y * 0.5 / std::tan(r.announced->camera.fov_y_rad * 0.5);
+        r.announced->prepare(*r.heights, size, split);
+        const double there = size.y * 0.5 / std::tan(r.announced->camera.fov_y_rad * 0.5);
         std::vector<SectorDistance> far =
             sector_distances(r.announced->patches, *r.heights, r.texture().live_radius_m(there, 0));
         for (SectorDistance& s : far) s.distance_m *= pixels_per_radian / there;
