@@ -173,7 +173,9 @@ FeedbackResult analyse_feedback(const FeedbackInput& input) {
             }
         }
     }
-    const size_t limit = std::max<size_t>(1, input.capacity_pages / input.rules.cache_divisor);
+    size_t limit = std::max<size_t>(1, input.capacity_pages / input.rules.cache_divisor);
+    if (input.exact && input.capacity_pages > input.kept_pages)
+        limit = std::max<size_t>(limit, input.capacity_pages - input.kept_pages);
     if (result.requests.size() > limit) {
         std::nth_element(result.requests.begin(), result.requests.begin() + std::ptrdiff_t(limit),
                          result.requests.end(), before);

@@ -48,7 +48,7 @@ struct FeedbackRules {
     double threshold_share =
         3.0 / (240 * 136);       // fewer cells than this do not get a page, unless it is visible
     double horizon_s = 0.25;     // a page that the camera crosses faster than this counts for less
-    uint32_t cache_divisor = 3;  // at most this part of the cache is requested
+    uint32_t cache_divisor = 3;  // at most this part of the cache is requested, but for a still picture
 };
 
 struct FeedbackInput {
@@ -56,9 +56,12 @@ struct FeedbackInput {
     const FeedbackImages* images = nullptr;
     TextureLayout layout;
     uint32_t capacity_pages = 0;
+    uint32_t kept_pages = 0;  // of them for others: roots of images, hidden sectors, places that rest
     FeedbackRules rules;
     double speed_m_s = 0;                           // of the camera
-    bool exact = false;                             // values of every_pixel: no cell is noise, no threshold
+    // Values of every_pixel: no cell is noise, so no threshold; nothing else will be wanted, so that all
+    // pages but the kept ones may be requested.
+    bool exact = false;
     std::function<bool(const PageId&)> is_visible;  // usable now: rescued from the threshold
 };
 

@@ -100,11 +100,18 @@ void VirtualTexture::Impl::take_feedback(const TextureView& view, Eye eye) {
     }
     if (!inbox.fresh) return;
     inbox.fresh = false;
+    // For roots, for hidden sectors, and a sixteenth at rest so that what is lacking finds a place; for an
+    // announced place all beyond the third.
+    const int places = pool.place_count();
+    const int kept = view.announced_m
+                         ? places
+                         : 1 + int(sectors.live().size()) + places / desc.hidden_divisor + places / 16;
     FeedbackResult result =
         analyse_feedback({.values = inbox.values,
                           .images = &inbox.images,
                           .layout = layout,
-                          .capacity_pages = uint32_t(pool.place_count()),
+                          .capacity_pages = uint32_t(places),
+                          .kept_pages = uint32_t(kept),
                           .rules = desc.feedback_rules,
                           .speed_m_s = eye == Eye::camera ? view.speed_m_s : 0.0,
                           .exact = inbox.exact,

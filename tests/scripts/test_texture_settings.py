@@ -135,8 +135,8 @@ def test_settings_do_what_they_say(opened):
     assert slow <= 8 and quick > 1.5 * slow, (slow, quick)
     assert jump({"texture.feedback": "grid"}, 4, moving=True)[1]["feedback_cells"] == 240 * 136
     assert jump({"texture.feedback": "eighth"}, 4, moving=True)[1]["feedback_cells"] == 24 * 14
-    few = jump({"texture.cache_divisor": 12}, 60, size=LARGER)[1]
-    many = jump({"texture.cache_divisor": 3}, 60, size=LARGER)[1]
+    few = jump({"texture.cache_divisor": 12}, 60, moving=True, size=LARGER)[1]
+    many = jump({"texture.cache_divisor": 3}, 60, moving=True, size=LARGER)[1]
     assert few["requested_pages"] <= 169 // 12 < many["requested_pages"] <= 169 // 3
     assert jump({"texture.max_live_sectors": 2}, 30)[1]["live_sectors"] == 2
     assert jump({"texture.hidden_divisor": 100}, 40)[1]["hidden_pages"] <= 1

@@ -31,13 +31,14 @@ uint32_t value(int mip, int id, int x, int y) {
 FeedbackResult analyse(
     std::vector<uint32_t> values, uint32_t capacity = 400,
     std::function<bool(const PageId&)> visible = [](const PageId&) { return false; }, double speed_m_s = 0,
-    bool exact = false) {
+    bool exact = false, uint32_t kept = 0) {
     static const FeedbackImages known = images();
     values.resize(std::max<size_t>(values.size(), 240 * 136), kNoTerrain);  // three cells are the threshold
     return analyse_feedback({.values = values,
                              .images = &known,
                              .layout = kLayout,
                              .capacity_pages = capacity,
+                             .kept_pages = kept,
                              .speed_m_s = speed_m_s,
                              .exact = exact,
                              .is_visible = std::move(visible)});
@@ -96,6 +97,17 @@ TEST(Feedback, AtMostAThirdOfTheCache) {
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 64; ++x) values.insert(values.end(), 4, value(0, 0, x, y));
     EXPECT_EQ(analyse(values, 90).requests.size(), 30u);
+}
+
+// Nothing else will be wanted: but for what is kept for others, a still picture may have every page.
+TEST(Feedback, AStillPictureMayHaveAllButWhatIsKept) {
+    std::vector<uint32_t> values;
+    for (int i = 0; i < 256; ++i) values.insert(values.end(), 10, value(0, 0, i & 15, i >> 4));
+    const auto none = [](const PageId&) { return false; };
+    EXPECT_EQ(analyse(values, 300, none, 0, true, 60).requests.size(), 240u);
+    EXPECT_EQ(analyse(values, 300, none, 0, true, 250).requests.size(), 100u);  // never less than a third
+    EXPECT_EQ(analyse(values, 300, none, 0, true, 400).requests.size(), 100u);
+    EXPECT_EQ(analyse(values, 300, none, 0, false, 60).requests.size(), 100u);
 }
 
 TEST(Feedback, ValuesThatMeanNoPageAreIgnored) {
