@@ -88,6 +88,10 @@ RendererDesc reference_renderer(RendererDesc desc) {
     return desc;
 }
 
+float supersample_bias(int samples) {
+    return -std::log2(static_cast<float>(std::max(1, samples)));
+}
+
 FrameSettings reference_frame(FrameSettings frame) {
     frame.shading = Shading::direct;
     frame.render_scale = 1.0f;
@@ -188,6 +192,7 @@ Result<Picture> Session::supersampled(Renderer& renderer, const RenderRequest& r
         for (int i = 0; i < n; ++i) {
             FrameSettings jittered = frame;
             jittered.jitter_px = {(i + 0.5) / n - 0.5, (j + 0.5) / n - 0.5};
+            jittered.footprint_bias = supersample_bias(n);
             auto picture = settle(renderer, request, jittered);
             if (!picture) return picture;
             all_settled = all_settled && last_render_settled_;

@@ -41,6 +41,9 @@ struct GroundBuffers {
 // What the reference has beyond a view's own settings: patches six node sides around the camera at full
 // detail (a few hundred), slots for all of them, 4 x 4 samples a pixel.
 inline constexpr int kReferenceSupersample = 4;
+// Of direct shading's footprint, log2: a sample of n x n covers its part of the pixel, so that the lit
+// samples are averaged rather than what is lit.
+[[nodiscard]] float supersample_bias(int samples);
 [[nodiscard]] RendererDesc reference_renderer(RendererDesc desc);
 [[nodiscard]] FrameSettings reference_frame(FrameSettings frame);
 

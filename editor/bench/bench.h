@@ -119,16 +119,23 @@ class TemporaryProject {
 Result<Json> measure_edit(Session& session, const Camera& camera, int width, int height,
                           const Command& command);
 
+// What pictures at rest are measured against: 64 samples a pixel, as 16 of grazing ground are 30 dB from
+// them.
+inline constexpr int kTruthSamples = 8;
+
 // The reference, frame after frame: a session of its own renderer keeps its pages from one picture to the
 // next.
 class ReferenceView {
   public:
-    static Result<ReferenceView> open(const std::filesystem::path& project, SessionDesc desc);
+    static Result<ReferenceView> open(const std::filesystem::path& project, SessionDesc desc,
+                                      int samples = kReferenceSupersample);
     Result<Picture> picture(const Camera& camera, int width, int height);
 
   private:
-    explicit ReferenceView(std::unique_ptr<Session> session) : session_(std::move(session)) {}
+    ReferenceView(std::unique_ptr<Session> session, int samples)
+        : session_(std::move(session)), samples_(samples) {}
     std::unique_ptr<Session> session_;
+    int samples_;  // a pixel's side
 };
 
 // Milliseconds from submit to fence of the newest frame's resolve again, or of its floor; without settings of

@@ -138,7 +138,7 @@ Result<BenchReport> bench_filter(const BenchRequest& request) {
     if (!session) return session.error();
     auto views = views_of(request, **session);
     if (!views) return views.error();
-    auto reference = ReferenceView::open(request.project, request.session);
+    auto reference = ReferenceView::open(request.project, request.session, kTruthSamples);
     if (!reference) return reference.error();
     BenchReport report{
         {fmt::format("filters at {}x{}; shares of the tiles by taps", request.width, request.height), {}}};

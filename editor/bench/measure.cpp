@@ -89,15 +89,17 @@ Result<std::unique_ptr<Session>> open_read_only(const std::filesystem::path& pro
     return Session::open(project, desc);
 }
 
-Result<ReferenceView> ReferenceView::open(const std::filesystem::path& project, SessionDesc desc) {
+Result<ReferenceView> ReferenceView::open(const std::filesystem::path& project, SessionDesc desc,
+                                          int samples) {
     desc.renderer = reference_renderer(desc.renderer);
     auto session = open_read_only(project, desc);
     if (!session) return session.error();
-    return ReferenceView(std::move(*session));
+    return ReferenceView(std::move(*session), samples);
 }
 
 Result<Picture> ReferenceView::picture(const Camera& camera, int width, int height) {
     RenderRequest request{.camera = camera, .width = width, .height = height, .frame = reference_frame({})};
+    request.frame.footprint_bias = supersample_bias(samples_);
     auto renderer = session_->renderer();
     if (!renderer) return renderer.error();
     for (int i = 0, resting = 0; i < request.max_frames && resting < 2; ++i) {
@@ -105,7 +107,7 @@ Result<Picture> ReferenceView::picture(const Camera& camera, int width, int heig
         resting = (*renderer)->settled() ? resting + 1 : 0;
     }
     request.max_frames = 1;  // samples within a pixel are no other view
-    request.supersample = kReferenceSupersample;
+    request.supersample = samples_;
     return session_->render(request);
 }
 

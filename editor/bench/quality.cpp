@@ -75,7 +75,7 @@ RenderRequest request_of(const BenchRequest& request, const Camera& camera) {
 // frame's own.
 Status shade_directly(const BenchRequest& request, const std::filesystem::path& project,
                       std::vector<Scene>& scenes) {
-    auto reference = ReferenceView::open(project, request.session);
+    auto reference = ReferenceView::open(project, request.session, kTruthSamples);
     if (!reference) return reference.error();
     auto session = open_read_only(project, request.session);
     if (!session) return session.error();
@@ -170,7 +170,7 @@ Status measure_level(const BenchRequest& request, const std::filesystem::path& p
             continue;
         }
         scene.pages = std::move(*trilinear);
-        cause("samples: one a pixel against sixteen", scene.direct_full, scene.reference);
+        cause("samples: one a pixel against 64", scene.direct_full, scene.reference);
         cause("geometry: the frame's cut against the full one", scene.direct, scene.direct_full);
         cause("filter: between texels and mips against direct", scene.texels, scene.direct);
         cause("paging: uncompressed pages against direct with the same filter", scene.pages, scene.texels);

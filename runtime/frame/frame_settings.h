@@ -47,7 +47,7 @@ struct FrameSettings {
         filter;  // of the virtual texture; none: what the device does best at rest, cheaply in motion
     int most_taps = kMaxTaps;  // anisotropic_tiles: 2, 4 or 8
     glm::dvec2 jitter_px{0, 0};
-    float footprint_bias = 0;  // direct shading: log2, negative leaves filtering to supersampling
+    float footprint_bias = 0;  // direct shading: log2; supersampling sets it (supersample_bias)
     int page_budget = -1;      // overrides RendererDesc::page_budget when >= 0
 };
 

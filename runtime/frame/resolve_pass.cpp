@@ -55,16 +55,17 @@ std::vector<gpu::Bound> cached_material(const ResolveInputs& in, const gpu::Samp
             {s + 6, in.texture.atlas(3).view(), sampler}};
 }
 
-std::vector<gpu::Bound> direct_material(const ResolveInputs& in) {
+std::vector<gpu::Bound> direct_material(const ResolveInputs& in, bool smooth) {
     constexpr uint32_t s = kMaterialSlot;
+    const gpu::Sampler& layers = smooth ? in.layers.smooth_sampler : in.layers.sampler;
     return {{s, in.texture.direct_params()},
             {s + 1, in.texture.direct_places()},
             {s + 2, in.indices.page_table()},
             {s + 3, in.indices.indices().view(), in.texture.nearest_sampler()},
             {s + 4, in.indices.tints().view(), in.texture.nearest_sampler()},
-            {s + 5, in.layers.albedo_reveal.view(), in.layers.sampler},
-            {s + 6, in.layers.normal_gloss_occlusion.view(), in.layers.sampler},
-            {s + 7, in.layers.metalness.view(), in.layers.sampler},
+            {s + 5, in.layers.albedo_reveal.view(), layers},
+            {s + 6, in.layers.normal_gloss_occlusion.view(), layers},
+            {s + 7, in.layers.metalness.view(), layers},
             {s + 8, *in.decals.buffer, in.decals.offset, in.decals.size_bytes},
             {s + 9, in.layers.distortion_map().view(), in.layers.sampler},
             {s + 10, *in.paints.buffer, in.paints.offset, in.paints.size_bytes},
@@ -160,8 +161,9 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
                                      : "frame/resolve.frag",
         .push_bytes = sizeof(shared::ResolvePush),
         // 0: fine shadows, 20: both mips of a page, 21: layers with metal, 22: decals, 23: of materials,
-        // 25: texels, 26: taps, 27: look-ups they are shared among, 28: the sampler's own anisotropy, 30, 31: the page's
-        // layout and channels, 40: tile hiding, 41: distortion, 42: transitions.
+        // 25: texels, 26: taps, 27: look-ups they are shared among, 28: the sampler's own anisotropy, 30, 31:
+        // the page's layout and channels, 40: tile hiding, 41: distortion, 42: transitions, 43: layers
+        // between their mips.
         .constants = {{0, v.fine_shadows},
                       {20, v.two_mips},
                       {21, layers.has_metal ? 1u : 0u},
@@ -175,7 +177,8 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
                       {31, textures.placement},
                       {40, layers.ground.tile_hiding},
                       {41, layers.ground.distortion_amplitude_m > 0},
-                      {42, layers.has_transitions}},
+                      {42, layers.has_transitions},
+                      {43, v.smooth_layers()}},
         .color_formats = {kPictureFormat},
         .depth_format = device_->caps().depth_stencil,
         .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
@@ -276,7 +279,7 @@ Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
     };
     const std::vector<gpu::Bound> material =
         floor    ? floor_material(in)
-        : direct ? direct_material(in)
+        : direct ? direct_material(in, v.smooth_layers())
                  : cached_material(in, v.hardware ? anisotropic_ : in.texture.sampler());
     bound.insert(bound.end(), material.begin(), material.end());
     if (v.debug) bound.emplace_back(kDebugFactsSlot, *in.facts.buffer, in.facts.offset, in.facts.size_bytes);

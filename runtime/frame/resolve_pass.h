@@ -60,6 +60,8 @@ class ResolvePass {
         bool debug = false, map = false;  // map: a debug view of the textures themselves, over the whole picture
         bool two_mips = false, hardware = false;
         int taps = 1, probes = 1;  // of the virtual texture, shaders/texture/vt_sample.glsl
+        // Pages are made of whole mips of the layers; a pixel at rest is not.
+        [[nodiscard]] bool smooth_layers() const { return ground == Ground::direct && fine_shadows; }
         auto operator<=>(const Variant&) const = default;
     };
 

@@ -195,11 +195,13 @@ Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const D
             }
     });
 
-    auto sampler = gpu::Sampler::create(device, {.filter = VK_FILTER_LINEAR,
-                                                 .mip_mode = VK_SAMPLER_MIPMAP_MODE_NEAREST,
-                                                 .address = VK_SAMPLER_ADDRESS_MODE_REPEAT});
-    if (!sampler.ok()) return sampler.error();
-    set->sampler = std::move(*sampler);
+    for (const VkSamplerMipmapMode mips : {VK_SAMPLER_MIPMAP_MODE_NEAREST, VK_SAMPLER_MIPMAP_MODE_LINEAR}) {
+        auto sampler = gpu::Sampler::create(
+            device,
+            {.filter = VK_FILTER_LINEAR, .mip_mode = mips, .address = VK_SAMPLER_ADDRESS_MODE_REPEAT});
+        if (!sampler.ok()) return sampler.error();
+        (mips == VK_SAMPLER_MIPMAP_MODE_NEAREST ? set->sampler : set->smooth_sampler) = std::move(*sampler);
+    }
 
     auto frame = ring.begin();
     if (!frame.ok()) return frame.error();

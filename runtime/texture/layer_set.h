@@ -34,6 +34,7 @@ class LayerSet {
     gpu::Image normal_gloss_occlusion;  // RGBA8_UNORM
     gpu::Image metalness;               // R8_UNORM; 1x1 where no layer has metal
     gpu::Sampler sampler;               // repeat, linear, nearest mip
+    gpu::Sampler smooth_sampler;        // blends mips, for direct shading at rest
     gpu::Image distortion;              // R16G16_SFLOAT (distortion.h); none without distortion
     GroundSettings ground;
     std::vector<LayerEntry> entries;  // the list that was taken last

@@ -11,6 +11,7 @@ layout(constant_id = 1) const bool kHasMetal = false;
 layout(constant_id = 2) const bool kTileHiding = false;
 layout(constant_id = 3) const bool kDistortion = false;
 layout(constant_id = 4) const bool kTransitions = false;
+const bool kSmoothMips = false;
 
 layout(binding = 0) uniform sampler2DArray layer_albedo;
 layout(binding = 1) uniform sampler2DArray layer_normal;

@@ -14,7 +14,7 @@
 // | +7 | layers' metalness | LayerSet::metalness, LayerSet::sampler |
 // | +9 | distortion map, sampler2DArray | LayerSet::distortion_map(), LayerSet::sampler |
 // Specialisation constants: 21 where a layer has metal (LayerSet::has_metal), 40 tile hiding, 41 distortion,
-// 42 transitions, 31 the optional channels (page_channels.glsl).
+// 42 transitions, 43 layers blended between their mips (LayerSet::smooth_sampler), 31 the optional channels (page_channels.glsl).
 //
 //     MaterialSample m = direct_material(rel.xy, log2_footprint); // camera-relative metres; log2 of metres a sample
 #ifndef LOAM_TEXTURE_DIRECT_GLSL
@@ -29,6 +29,7 @@ layout(constant_id = 21) const bool kHasMetal = false;
 layout(constant_id = 40) const bool kTileHiding = false;
 layout(constant_id = 41) const bool kDistortion = false;
 layout(constant_id = 42) const bool kTransitions = false;
+layout(constant_id = 43) const bool kSmoothMips = false;
 const bool kOneLayer = false;
 layout(binding = DIRECT_FIRST_SLOT + 0, scalar) readonly buffer DirectParamsBuffer { DirectParams direct; };
 layout(binding = DIRECT_FIRST_SLOT + 1, scalar) readonly buffer DirectPlaces { LayerPlace direct_places[]; };

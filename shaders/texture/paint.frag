@@ -11,6 +11,7 @@
 layout(constant_id = 0) const uint kKind = kPaintTerrain;
 layout(constant_id = 1) const uint kPart = 0u;
 layout(constant_id = 2) const bool kHasMetal = false;
+const bool kSmoothMips = false;
 layout(binding = 0, scalar) readonly buffer Instances { PaintInstance instances[]; };
 layout(binding = 1, scalar) readonly buffer Segments { PaintSegment segments[]; };
 layout(binding = 2, scalar) readonly buffer Heights { float heights[]; };

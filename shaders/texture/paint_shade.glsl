@@ -2,7 +2,7 @@
 // physical texture's channels and encodings. Composition and direct shading evaluate these same functions of the place in
 // the frame and the texel's size (paint_io.h).
 //
-// The includer declares MATERIAL_ALBEDO, MATERIAL_NORMAL, MATERIAL_METAL (the layers' sampler2DArrays), kHasMetal, and
+// The includer declares MATERIAL_ALBEDO, MATERIAL_NORMAL, MATERIAL_METAL (the layers' sampler2DArrays), kHasMetal, kSmoothMips, and
 // PAINT_SEGMENT(i), a PaintSegment.
 #ifndef LOAM_TEXTURE_PAINT_SHADE_GLSL
 #define LOAM_TEXTURE_PAINT_SHADE_GLSL
@@ -120,7 +120,8 @@ PaintPlace paint_volume(PaintDecal decal, vec3 at_m, vec3 ground, float texel_m)
 PaintShade paint_material(PaintDecal decal, PaintPlace place) {
     PaintShade shade;
     vec3 uv = vec3(place.uv, float(max(decal.layer, 0)));
-    float lod = max(floor(decal.lod_bias + log2(place.texel_m) + 0.5), 0.0);
+    float lod = decal.lod_bias + log2(place.texel_m);
+    lod = max(kSmoothMips ? lod : floor(lod + 0.5), 0.0);
     vec3 albedo = textureLod(MATERIAL_ALBEDO, uv, lod).rgb;
     vec4 surface = textureLod(MATERIAL_NORMAL, uv, lod); // normal x, normal y, gloss, occlusion as stored
     float metal = 0.0;
