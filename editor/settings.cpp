@@ -46,7 +46,7 @@ constexpr Setting kSettings[] = {
     {"texture.velocity_horizon_s", [](R& r) -> Target { return &r.texture.feedback_rules.horizon_s; }, 0, 60,
      "pages that the camera crosses faster than this count for less"},
     {"texture.cache_divisor", [](R& r) -> Target { return &r.texture.feedback_rules.cache_divisor; }, 1, 64,
-     "at most this part of the physical texture is requested"},
+     "at most this part of the physical texture is requested by a picture in motion"},
     {"texture.first_retry_frames", [](R& r) -> Target { return &r.texture.pool_rules.first_retry_frames; }, 1,
      100'000, "until a page that lacks inputs is composed again; then twice as long"},
     {"texture.last_retry_frames", [](R& r) -> Target { return &r.texture.pool_rules.last_retry_frames; }, 1,
