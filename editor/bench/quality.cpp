@@ -170,7 +170,8 @@ Status measure_level(const BenchRequest& request, const std::filesystem::path& p
             continue;
         }
         scene.pages = std::move(*trilinear);
-        cause("samples: one a pixel against 64", scene.direct_full, scene.reference);
+        cause(fmt::format("samples: one a pixel against {}", kTruthSamples * kTruthSamples),
+              scene.direct_full, scene.reference);
         cause("geometry: the frame's cut against the full one", scene.direct, scene.direct_full);
         cause("filter: between texels and mips against direct", scene.texels, scene.direct);
         cause("paging: uncompressed pages against direct with the same filter", scene.pages, scene.texels);

@@ -8,6 +8,12 @@
 #include "shaders/base/shared.h"
 LOAM_BEGIN_SHARED
 
+// The mip that is looked up. A page's texels want the same everywhere, so that the nearest will do. Pixels want another each: there
+// the step from mip to mip would show.
+LOAM_INLINE float layer_lod(float wanted, bool smooth_mips) {
+    return max(smooth_mips ? wanted : floor(wanted + 0.5f), 0.0f);
+}
+
 // --- signed values in eight bits: 128 is 0, 1 and 255 are -1 and 1 ---
 
 LOAM_INLINE float layer_encode_signed(float x) {

@@ -56,11 +56,6 @@ vec2 distortion_at(vec2 at, float lod) {
     return textureLod(MATERIAL_DISTORTION, vec3(at, 0.0), max(floor(lod + 0.5), 0.0)).xy;
 }
 
-// A page's texels want one mip everywhere, so that the nearest will do. Pixels want another each: the step from mip to mip shows.
-float layer_lod(float wanted) {
-    return kSmoothMips ? wanted : floor(wanted + 0.5);
-}
-
 struct LayerSample {
     vec4 albedo_reveal;
     vec4 surface; // normal x, normal y, gloss, occlusion as stored
@@ -81,7 +76,7 @@ LayerSample sample_textures(MaterialCorners c, uint key, LayerPlace place) {
         at = turned + section.shift;
     }
     vec3 uv = vec3(at, float(place.slot));
-    float lod = max(layer_lod(place.lod_bias + c.log2_texel), 0.0);
+    float lod = layer_lod(place.lod_bias + c.log2_texel, kSmoothMips);
     LayerSample s = LayerSample(textureLod(MATERIAL_ALBEDO, uv, lod), textureLod(MATERIAL_NORMAL, uv, lod), 0.0, place.channels);
     if (kHasMetal) s.metalness = textureLod(MATERIAL_METAL, uv, lod).r;
     if (kTileHiding) { // what is turned one way to be looked up is seen turned the other way

@@ -8,6 +8,7 @@
 #define LOAM_TEXTURE_PAINT_SHADE_GLSL
 #include "shaders/document/noise_math.h"
 #include "shaders/texture/decal_io.h"
+#include "shaders/texture/layer_math.h"
 #include "shaders/texture/paint_io.h"
 #include "shaders/texture/texture_io.h"
 
@@ -120,8 +121,7 @@ PaintPlace paint_volume(PaintDecal decal, vec3 at_m, vec3 ground, float texel_m)
 PaintShade paint_material(PaintDecal decal, PaintPlace place) {
     PaintShade shade;
     vec3 uv = vec3(place.uv, float(max(decal.layer, 0)));
-    float lod = decal.lod_bias + log2(place.texel_m);
-    lod = max(kSmoothMips ? lod : floor(lod + 0.5), 0.0);
+    float lod = layer_lod(decal.lod_bias + log2(place.texel_m), kSmoothMips);
     vec3 albedo = textureLod(MATERIAL_ALBEDO, uv, lod).rgb;
     vec4 surface = textureLod(MATERIAL_NORMAL, uv, lod); // normal x, normal y, gloss, occlusion as stored
     float metal = 0.0;
