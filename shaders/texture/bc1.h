@@ -1,6 +1,7 @@
 // BC1 (DXT1) of a 4×4 block for live pages: principal axis by power iteration; endpoints from the outermost texels along it,
 // and a second time from within them; each start refined by least squares against the positions it led to, twice; the best attempt
 // is kept, and beside them one colour for the whole block. bc1_fine.h is the dearer encoder of the same format.
+// Longer than 200 lines because packing, error and search share their scaled colours, and bc1_fine.h and bc3.h build on all of it.
 // Sources: the method of stb_dxt and of Simon Brown's "DXT Compression Techniques"; written anew.
 // Differences: two starts (0.2–0.35 dB on photographs over one); the endpoints of a channel are rounded together; no tables for
 // the one colour, which picks, a channel, the best of the four thirds between two neighbouring endpoint values (error at most
