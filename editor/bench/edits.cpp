@@ -137,8 +137,12 @@ Status one_dab(Rig& rig, int i, DabFigures& out) {
     const Picture before = rig.picture();
     const double steady_ms = spread_of(steady).median;
     const FrameStatistics a = (*renderer)->statistics();
-    // Places go round the middle of the picture, so that dabs overlap as a stroke's do.
-    const double angle = 2.4 * i, away_m = 0.5 * std::min(rig.brush().radius_m, 0.4 * rig.brush().distance_m);
+    // Places go round the middle of the picture, so that dabs overlap as a stroke's do. Footprints trample a
+    // circle of 3 m: nobody steps on one spot 200 times.
+    const double angle = 2.4 * i;
+    const double away_m = rig.brush().tool == Tool::footprint
+                              ? 1.5 * std::sqrt((i % kDabs + 0.5) / kDabs)
+                              : 0.5 * std::min(rig.brush().radius_m, 0.4 * rig.brush().distance_m);
     const glm::dvec2 place =
         rig.target() + glm::dvec2(away_m * std::cos(angle), away_m * std::sin(angle) * 0.7);
     const double start_ms = now_ms();

@@ -60,6 +60,12 @@ void for_each_sample(const SampleGrid<T>& grid, const WorldRect& rect, double x_
     }
 }
 
+// Of a box turned by a heading.
+WorldRect turned_box(double x_m, double y_m, glm::dvec2 half_m, double heading_rad) {
+    const double c = std::abs(std::cos(heading_rad)), s = std::abs(std::sin(heading_rad));
+    return around(x_m, y_m, c * half_m.x + s * half_m.y, s * half_m.x + c * half_m.y);
+}
+
 double depth_of(const Crater& crater) {
     return crater.depth_m > 0 ? crater.depth_m : crater.radius_m * 0.4;
 }
@@ -173,9 +179,7 @@ struct HeightRects {
     Rects operator()(const Crater& c) const {
         return {square(c.x_m, c.y_m, c.radius_m * double(kCraterHeightReach))};
     }
-    Rects operator()(const Footprint& f) const {
-        return {square(f.x_m, f.y_m, f.length_m * double(kFootprintReach))};
-    }
+    Rects operator()(const Footprint& f) const { return {bounds_of(f)}; }
     Rects operator()(const SplineDecal& s) const {
         return s.carve > 0 ? rects_along(s, carve_reach_m(s)) : Rects{};
     }
@@ -188,14 +192,10 @@ struct TextureRects {
     Rects operator()(const Crater& c) const {
         return {square(c.x_m, c.y_m, c.radius_m * double(kCraterMarkReach))};
     }
-    Rects operator()(const Footprint& f) const {
-        return {square(f.x_m, f.y_m, f.length_m * double(kFootprintReach))};
-    }
+    Rects operator()(const Footprint& f) const { return {bounds_of(f)}; }
     Rects operator()(const SplineDecal& s) const { return rects_along(s, path_of(s).half_width_m()); }
     Rects operator()(const TerrainDecal& d) const {
-        const double c = std::abs(std::cos(d.heading_rad)), s = std::abs(std::sin(d.heading_rad));
-        const glm::dvec2 half = glm::abs(d.half_m);
-        return {around(d.x_m, d.y_m, c * half.x + s * half.y, s * half.x + c * half.y)};
+        return {turned_box(d.x_m, d.y_m, glm::abs(d.half_m), d.heading_rad)};
     }
     Rects operator()(const VolumeDecal& v) const {
         const VolumeAxes axes = axes_of(v);
@@ -232,6 +232,11 @@ VolumeAxes axes_of(const VolumeDecal& volume) {
     const glm::dvec3 y = glm::cross(z, x);
     const double c = std::cos(volume.roll_rad), s = std::sin(volume.roll_rad);
     return {x * c + y * s, y * c - x * s, z};
+}
+
+WorldRect bounds_of(const Footprint& print) {
+    const glm::dvec2 half(double(kFootprintHalfWidth), double(kFootprintHalfLength));
+    return turned_box(print.x_m, print.y_m, print.length_m * half, print.heading_rad);
 }
 
 void prepare(Operator& op) {

@@ -31,6 +31,7 @@ struct Footprint {
     int foot = 0;            // 0 left, 1 right
     uint32_t seed = 0;
 };
+[[nodiscard]] WorldRect bounds_of(const Footprint& print);  // outside it a print changes nothing
 
 using OperatorShape = std::variant<Crater, Footprint, TerrainDecal, SplineDecal, VolumeDecal>;
 [[nodiscard]] const DecalMaterial* material_of(const OperatorShape& shape);  // null: has none

@@ -32,7 +32,7 @@ uint32_t encoded_units(const TexelRect& rect, const PageTextures& textures) {
     return units;
 }
 
-constexpr int kOneLayerKind = 1, kTransitionKind = 2;  // bits of a rectangle's kind
+constexpr int kOneLayerKind = 1, kTransitionKind = 2;  // bits of a square's kind
 
 // Of a place in something that repeats every period_m: 0 … 1.
 float phase(double at_m, double period_m) {
@@ -43,12 +43,17 @@ float phase(double at_m, double period_m) {
 }  // namespace
 
 struct Composer::Placed {
+    // A square of 8 texels.
+    struct Tile {
+        uint32_t layer = 0;  // or its key
+        int kind = 0;        // of materials_
+    };
     ComposeJob job;
     shared::ComposeRect rect{};
-    int kind = 0;  // of materials_
+    std::vector<Tile> tiles;  // row by row
 };
 
-// What the shaders of a batch read: rectangles, and their tiles, kind after kind.
+// What the shaders of a batch read: rectangles, and their squares, kind after kind.
 struct Composer::Work {
     gpu::UploadSlice rects, tiles;
     uint32_t tile_count = 0;
@@ -155,7 +160,7 @@ shared::LayerPlace Composer::layer_place(double origin_x_m, double origin_y_m, d
             {}};
 }
 
-// Where the page lies in its index page, and whether the rectangle holds one layer only.
+// Where the page lies in its index page, and what each square of the rectangle holds.
 Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min) {
     Placed placed{.job = job};
     const VirtualMap& map = index_.map();
@@ -174,7 +179,6 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
         .index_vertex = glm::ivec2(job.index_page.x, job.index_page.y) * kIndexPayload - kIndexBorder,
         .index_level = job.index_page.level,
         .first_place = 0,
-        .layer = 0,
         .last_layer = uint32_t(layers_.count - 1),
         .first_unit = 0,
         .units = encoded_units(job.rect, textures_)};
@@ -200,8 +204,10 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
         return std::clamp(int(std::floor(from + (texel - 4.5) / kPagePayload * scale + reach)) + 3, 1,
                           kIndexTexels);
     };
-    const TexelRect seen{first(job.rect.x0, origin.x), first(job.rect.y0, origin.y),
-                         last(job.rect.x1, origin.x), last(job.rect.y1, origin.y)};
+    const auto seen = [&](const TexelRect& rect) {
+        return TexelRect{first(rect.x0, origin.x), first(rect.y0, origin.y), last(rect.x1, origin.x),
+                         last(rect.y1, origin.y)};
+    };
     const IndexTexel* texels = index_.resident_page(job.index_page);
     LOAM_CHECK(texels, "a page is composed from a resident index page only");
     const auto layer_at = [&](int x, int y) {
@@ -211,15 +217,27 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
         return ground.tile_hiding ? shared::tile_key(layer, vertex.x, vertex.y, placed.rect.index_level)
                                   : layer;
     };
-    placed.rect.layer = layer_at(seen.x0, seen.y0);
-    bool one_layer = true, transitions = false;
-    for (int y = seen.y0; y < seen.y1 && (one_layer || layers_.has_transitions); ++y)
-        for (int x = seen.x0; x < seen.x1; ++x) {
-            const uint32_t layer = layer_at(x, y);
-            one_layer &= layer == placed.rect.layer;
-            transitions |= layers_.is_transition(ground.tile_hiding ? layer >> kKeyLayerShift : layer);
+    const auto tile_of = [&](const TexelRect& range) {
+        const uint32_t layer = layer_at(range.x0, range.y0);
+        bool one_layer = true, transitions = false;
+        for (int y = range.y0; y < range.y1 && (one_layer || layers_.has_transitions); ++y)
+            for (int x = range.x0; x < range.x1; ++x) {
+                const uint32_t other = layer_at(x, y);
+                one_layer &= other == layer;
+                transitions |= layers_.is_transition(ground.tile_hiding ? other >> kKeyLayerShift : other);
+            }
+        return Placed::Tile{layer, (one_layer ? kOneLayerKind : 0) | (transitions ? kTransitionKind : 0)};
+    };
+    const glm::ivec2 size = placed.rect.rect_size / kTileTexels;
+    const Placed::Tile whole = tile_of(seen(job.rect));
+    placed.tiles.assign(size_t(size.x) * size_t(size.y), whole);
+    if (whole.kind & kOneLayerKind) return placed;
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+            const int x0 = job.rect.x0 + x * kTileTexels, y0 = job.rect.y0 + y * kTileTexels;
+            placed.tiles[size_t(y) * size_t(size.x) + size_t(x)] =
+                tile_of(seen({x0, y0, x0 + kTileTexels, y0 + kTileTexels}));
         }
-    placed.kind = (one_layer ? kOneLayerKind : 0) | (transitions ? kTransitionKind : 0);
     return placed;
 }
 
@@ -267,23 +285,24 @@ Composer::Work Composer::upload(gpu::FrameRing& ring, std::span<Placed> batch) {
         rect.first_place = uint32_t(i * size_t(layers_.count));
         rect.first_unit = units;
         units += rect.units * uint32_t(textures_.count);
-        const uint32_t tiles = uint32_t(batch[i].job.rect.area() / (kTileTexels * kTileTexels));
-        work.tile_count += tiles;
-        work.kind_tiles[size_t(batch[i].kind)] += tiles;
+        work.tile_count += uint32_t(batch[i].tiles.size());
+        for (const Placed::Tile& tile : batch[i].tiles) ++work.kind_tiles[size_t(tile.kind)];
     }
     work.rects = ring.upload(batch.size() * sizeof(shared::ComposeRect));
-    work.tiles = ring.upload(work.tile_count * sizeof(uint32_t));
+    work.tiles = ring.upload(work.tile_count * sizeof(shared::ComposeTile));
     auto* rects = work.rects.as<shared::ComposeRect>();
-    auto* tiles = work.tiles.as<uint32_t>();
     for (size_t i = 0; i < batch.size(); ++i) rects[i] = batch[i].rect;
-    for (int kind = 0; kind < int(work.kind_tiles.size()); ++kind)
-        for (size_t i = 0; i < batch.size(); ++i) {
-            if (batch[i].kind != kind) continue;
-            const glm::ivec2 size = batch[i].rect.rect_size / kTileTexels;
-            for (int y = 0; y < size.y; ++y)
-                for (int x = 0; x < size.x; ++x)
-                    *tiles++ = shared::compose_tile(uint32_t(i), uint32_t(x), uint32_t(y));
-        }
+    std::array<shared::ComposeTile*, 4> next{};
+    auto* tiles = work.tiles.as<shared::ComposeTile>();
+    for (size_t kind = 0; kind < next.size(); tiles += work.kind_tiles[kind++]) next[kind] = tiles;
+    for (size_t i = 0; i < batch.size(); ++i) {
+        const glm::ivec2 size = batch[i].rect.rect_size / kTileTexels;
+        const Placed::Tile* tile = batch[i].tiles.data();
+        for (int y = 0; y < size.y; ++y)
+            for (int x = 0; x < size.x; ++x, ++tile)
+                *next[size_t(tile->kind)]++ = {
+                    shared::compose_tile_place(uint32_t(i), uint32_t(x), uint32_t(y)), tile->layer};
+    }
     return work;
 }
 

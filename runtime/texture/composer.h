@@ -1,7 +1,7 @@
 // Composes rectangles of pages on the GPU: materials (compute), decals (graphics), compression (compute),
 // copy into the physical textures. Many rectangles share the scratch images: they are packed on shelves, and
 // a full scratch is flushed. A batch is a fixed number of dispatches and copies, whatever the number of its
-// rectangles: shaders find theirs in a list of tiles of 8x8 texels.
+// rectangles: shaders find theirs in lists of tiles of 8x8 texels, a list for each kind of ground.
 //
 // A rectangle is aligned to 8 texels, so that it holds whole blocks of both mips. Each texel is a function of
 // its place in the page and of the inputs only: a rectangle composed alone has the bytes that it has as part
@@ -77,7 +77,7 @@ class Composer {
     gpu::Image scratch_;  // see shaders/texture/page_format.h
     gpu::Buffer encoded_;
     gpu::Sampler nearest_;
-    // By one layer only (1) and transitions (2): a rectangle runs the one for what is in it.
+    // By one layer only (1) and transitions (2): a square of 8 texels runs the one for what is in it.
     std::array<gpu::Pipeline, 4> materials_;
     gpu::Pipeline encode_[2];
     std::optional<DecalPasses> decals_;

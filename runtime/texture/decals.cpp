@@ -121,9 +121,7 @@ struct PageDecals {
     void operator()(const Crater& c) const {
         mark(source_of(c), square_around(c.x_m, c.y_m, source_of(c).reach_m));
     }
-    void operator()(const Footprint& f) const {
-        mark(source_of(f), square_around(f.x_m, f.y_m, source_of(f).reach_m));
-    }
+    void operator()(const Footprint& f) const { mark(source_of(f), bounds_of(f)); }
     void operator()(const TerrainDecal& decal, const WorldRect& bounds) const {
         const TexelRect quad = covered(bounds);
         if (quad.empty() || !shown(size_m(decal))) return;

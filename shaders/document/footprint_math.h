@@ -10,6 +10,9 @@ LOAM_BEGIN_SHARED
 
 #define kFootprintReach 0.72f  // of marks and of the dent, in lengths
 #define kFootprintRim 0.16f    // width of the raised rim outside the sole, in lengths
+// The box of the sole and its rim, half sides in lengths: what lies outside is left as it is.
+#define kFootprintHalfWidth 0.345f
+#define kFootprintHalfLength 0.655f
 
 // `offset`: from the print's middle, east and north, in units of its length; `heading`: (sin, cos) of the
 // heading clockwise from north, which is the direction of the toes.

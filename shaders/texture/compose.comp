@@ -21,7 +21,7 @@ layout(binding = 4) uniform sampler2DArray tint_pages;
 layout(binding = 5, scalar) readonly buffer Places { LayerPlace places[]; };
 layout(binding = 6, rgba8) uniform writeonly image2DArray scratch;
 layout(binding = 7, scalar) readonly buffer Rects { ComposeRect rects[]; };
-layout(binding = 8, scalar) readonly buffer Tiles { uint tiles[]; };
+layout(binding = 8, scalar) readonly buffer Tiles { ComposeTile tiles[]; };
 layout(binding = 9) uniform sampler2DArray distortion_map;
 layout(push_constant, scalar) uniform Push { ComposePush push; };
 
@@ -35,9 +35,9 @@ ComposeRect rect;
 #include "shaders/texture/material.glsl"
 
 void main() {
-    uint tile = tiles[push.first_tile + gl_WorkGroupID.x];
-    rect = rects[tile >> 10u];
-    ivec2 at = ivec2(tile & 31u, tile >> 5u & 31u) * kTileTexels + ivec2(gl_LocalInvocationID.xy);
+    ComposeTile tile = tiles[push.first_tile + gl_WorkGroupID.x];
+    rect = rects[tile.place >> 10u];
+    ivec2 at = ivec2(tile.place & 31u, tile.place >> 5u & 31u) * kTileTexels + ivec2(gl_LocalInvocationID.xy);
     // Everything follows from the texel's place in the page, never from its place in the rectangle.
     ivec2 texel = rect.rect_min + at;
     precise vec2 position = (vec2(texel) - (float(kPageBorder) - 0.5)) * (1.0 / float(kPagePayload));
@@ -53,7 +53,7 @@ void main() {
     ivec3 base = ivec3(ivec2(corner), int(rect.index_slot));
 
     MaterialCorners c;
-    c.layers = uvec4(rect.layer);
+    c.layers = uvec4(tile.layer);
     if (!kOneLayer) {
         c.layers.x = texelFetch(index_pages, base, 0).r;
         c.layers.y = texelFetch(index_pages, base + ivec3(1, 0, 0), 0).r;

@@ -37,20 +37,21 @@ struct ComposeRect {
     float distortion_reach; // index texels of the level
     float distortion_lod;
     uint first_place;    // of the rectangle's layer places
-    uint layer;          // of one-layer rectangles; with tile hiding its key (tile_hiding.h)
     uint last_layer;     // larger indices in the map count as this one
     uint first_unit;     // of its output: blocks, or texels of RGBA8; mip by mip, texture by texture
     uint units;          // a texture
 };
 
-// Work is listed in squares of 8 texels, so that a dispatch holds any number of rectangles:
-// | bits | meaning |
-// | --- | --- |
-// | 0–4 | x in the rectangle, squares |
-// | 5–9 | y |
-// | 10–31 | rectangle |
+// Work is listed in squares of 8 texels, so that a dispatch holds any number of rectangles, and those of a
+// page that hold one layer run another pipeline than those where layers meet.
 #define kTileTexels 8
-LOAM_INLINE uint compose_tile(uint rect, uint x, uint y) { return rect << 10u | y << 5u | x; }
+struct ComposeTile {
+    uint place;  // bits 0-4: x in the rectangle, squares; 5-9: y; 10-31: the rectangle
+    uint layer;  // of a square of one layer; with tile hiding its key (tile_hiding.h)
+};
+LOAM_INLINE uint compose_tile_place(uint rect, uint x, uint y) {
+    return rect << 10u | y << 5u | x;
+}
 
 struct ComposePush {
     uint first_tile;     // of this dispatch

@@ -6,7 +6,7 @@ layout(constant_id = 0) const int kMip = 0;
 layout(constant_id = 30) const uint kPageLayout = kPageRows;
 layout(binding = 0) uniform sampler2DArray scratch;
 layout(binding = 2, scalar) readonly buffer Rects { ComposeRect rects[]; };
-layout(binding = 3, scalar) readonly buffer Tiles { uint tiles[]; };
+layout(binding = 3, scalar) readonly buffer Tiles { ComposeTile tiles[]; };
 layout(push_constant, scalar) uniform Push { EncodePush push; };
 
 // Albedo is stored as a square root: its mip averages the square.
@@ -36,7 +36,7 @@ struct Unit {
     uint output_index;
 };
 Unit unit_of(uint thread, int log2_side, int which, int log2_unit_texels) {
-    uint tile = tiles[thread >> (2 * log2_side)];
+    uint tile = tiles[thread >> (2 * log2_side)].place;
     ComposeRect rect = rects[tile >> 10u];
     int inside = int(thread) & ((1 << (2 * log2_side)) - 1);
     Unit unit;

@@ -97,6 +97,10 @@ TEST(footprint, is_a_dent_with_a_rim_and_mirrors) {
             if (std::hypot(x, y) > kFootprintReach - 0.02f) {
                 ASSERT_EQ(h, 0.0f) << "fades out before the reach";
             }
+            if (std::abs(x) >= kFootprintHalfWidth || std::abs(y) >= kFootprintHalfLength) {
+                ASSERT_EQ(h, 0.0f) << "fits its box";
+                ASSERT_LE(shared::footprint_sole(vec2(x, y), 0), -kFootprintRim) << x << ", " << y;
+            }
             ASSERT_EQ(shared::footprint_sole(vec2(x, y), 0), shared::footprint_sole(vec2(-x, y), 1));
         }
     EXPECT_EQ(low, -1.0f);
