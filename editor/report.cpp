@@ -64,7 +64,9 @@ Json to_report(const ProjectSettings& s) {
             {"ground",
              {{"distortion_amplitude_m", s.ground.distortion_amplitude_m},
               {"distortion_period_m", s.ground.distortion_period_m},
-              {"tile_hiding", s.ground.tile_hiding}}},
+              {"tile_hiding", s.ground.tile_hiding},
+              {"vista_scale", s.ground.vista_scale},
+              {"vista_distance_m", s.ground.vista_distance_m}}},
             {"channels", channels},
             {"layers", layers}};
 }

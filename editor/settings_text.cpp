@@ -20,6 +20,8 @@ constexpr Entry kEntries[] = {
      nullptr},
     {"ground.distortion_period_m", [](ProjectSettings& s) { return &s.ground.distortion_period_m; }, nullptr},
     {"ground.tile_hiding", nullptr, [](ProjectSettings& s) { return &s.ground.tile_hiding; }},
+    {"ground.vista_scale", [](ProjectSettings& s) { return &s.ground.vista_scale; }, nullptr},
+    {"ground.vista_distance_m", [](ProjectSettings& s) { return &s.ground.vista_distance_m; }, nullptr},
 };
 
 }  // namespace

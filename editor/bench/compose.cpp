@@ -82,12 +82,12 @@ Status bench_pages(Stage& stage, PageFormat format, BenchTable& table) {
     // Dirt of a footprint: the same small rectangle on twelve levels.
     std::vector<ComposeJob> small(12, busiest), large(12, busiest);
     for (size_t i = 0; i < small.size(); ++i)
-        small[i].rect = {96, 96, i < 3 ? 184 : 112, i < 3 ? 184 : 112}, large[i].rect = {96, 96, 160, 160};
+        small[i].rect = {96, 96, i < 3 ? 192 : 112, i < 3 ? 192 : 112}, large[i].rect = {96, 96, 160, 160};
     LOAM_TRY(add("1 whole page, plain", least, {plainest}));
     LOAM_TRY(add("1 whole page, busy", most, {busiest}));
     LOAM_TRY(add("4 whole pages, busy", most, {busiest, busiest, busiest, busiest}));
     LOAM_TRY(add("12 squares of 64 texels", most, large));
-    return add("3 squares of 88 and 9 of 16 texels", most, small);
+    return add("3 squares of 96 and 9 of 16 texels", most, small);
 }
 
 Status bench_edits(Stage& stage, PageFormat format, BenchTable& table) {

@@ -40,14 +40,22 @@ void make_half_transitions(ProjectSettings& s) {
     }
 }
 
+// Both lookups in the page that is timed.
+void turn_vista_on(ProjectSettings& s) {
+    s.ground.vista_scale = 8;
+    s.ground.vista_distance_m = 20;
+}
+
 constexpr Feature kFeatures[] = {
     {"plain", [](ProjectSettings&) {}},
     {"distortion", [](ProjectSettings& s) { s.ground.distortion_amplitude_m = 0.6 * s.index_spacing_m; }},
     {"tile hiding", [](ProjectSettings& s) { s.ground.tile_hiding = true; }},
+    {"vista", turn_vista_on},
     {"transitions", make_half_transitions},
     {"all", [](ProjectSettings& s) {
          s.ground.distortion_amplitude_m = 0.6 * s.index_spacing_m;
          s.ground.tile_hiding = true;
+         turn_vista_on(s);
          make_half_transitions(s);
      }}};
 
@@ -76,16 +84,6 @@ double lookups_a_texel(const Stage& stage, const IndexTexel* texels, const Compo
     return double(sum) / double(side * side);
 }
 
-Result<ComposeJob> whole_page(Stage& stage, const PageId& page) {
-    const TextureLayout layout = texture_layout(stage.document.bounds());
-    const WorldRect square = layout.square(page);
-    ComposeJob job{.page = page, .rect = {0, 0, kPageTexels, kPageTexels}, .index_page = {}};
-    job.index_page = stage.index->page_for_square(square.min_x, square.min_y, layout.page_side_m(page));
-    LOAM_TRY(stage.make_resident(job.index_page));
-    job.index_slot = stage.index->map().slot_of(job.index_page);
-    return job;
-}
-
 struct PageCost {
     double ms = 0, lookups = 0;
     uint64_t layer_bytes = 0;
@@ -103,7 +101,7 @@ Result<PageCost> page_cost(const std::filesystem::path& project, gpu::Device& de
     auto composer = Composer::create(device, **document, *stage->index, *stage->layers,
                                      texture_layout((*document)->bounds()), *textures, false);
     if (!composer) return composer.error();
-    auto job = whole_page(*stage, kPage);
+    auto job = stage->whole_page(kPage);
     if (!job) return job.error();
     const std::vector<ComposeJob> jobs(4, *job);
     double best = 1e9, idle = 1e9;
@@ -233,7 +231,7 @@ Status add_tile_hiding(const BenchRequest& request, gpu::Device& device, BenchTa
             // About eight tiles wide.
             PageId page{{true, 1, 1}, 0, 0, 0};
             while (layout.page_side_m(page) > 12 * source->layers[layer].tile_m) ++page.depth;
-            auto job = whole_page(*stage, page);
+            auto job = stage->whole_page(page);
             if (!job) return job.error();
             std::vector<double> values(size_t(kPageTexels) * kPageTexels);
             auto ms = stage->timed_frame([&](gpu::Commands& commands) -> Status {
@@ -327,13 +325,14 @@ Status add_transition_error(const BenchRequest& request, BenchTable& table) {
 Result<BenchReport> bench_materials(const BenchRequest& request) {
     auto device = gpu::Device::create(request.session.device);
     if (!device) return device.error();
-    BenchReport report(3);
+    BenchReport report(4);
     report[0].title = "A whole page of 8 m, RGBA8, and the picture against the reference (a mosaic of 4 m)";
     LOAM_TRY(add_costs(request, **device, report[0]));
     report[1].title = "Tile hiding: largest autocorrelation at half to one and a half tiles";
     LOAM_TRY(add_tile_hiding(request, **device, report[1]));
     report[2].title = "A transition against the same blend authored at full resolution, albedo, by mip";
     LOAM_TRY(add_transition_error(request, report[2]));
+    LOAM_TRY(add_vista_steps(request, **device, report[3]));
     return report;
 }
 

@@ -5,6 +5,7 @@
 
 #include "editor/bench/bench.h"
 #include "runtime/maps/index_map.h"
+#include "runtime/texture/composer.h"
 #include "runtime/texture/layer_set.h"
 
 namespace loam::bench {
@@ -40,6 +41,16 @@ struct Stage {
         LOAM_TRY(ring->finish(**begun));
         return glm::dvec2(recorded_ms - start_ms, now_ms() - recorded_ms);
     }
+    // A page by itself, its inputs resident.
+    Result<ComposeJob> whole_page(const PageId& page) {
+        const TextureLayout layout = texture_layout(document.bounds());
+        const WorldRect square = layout.square(page);
+        ComposeJob job{.page = page, .rect = {0, 0, kPageTexels, kPageTexels}, .index_page = {}};
+        job.index_page = index->page_for_square(square.min_x, square.min_y, layout.page_side_m(page));
+        LOAM_TRY(make_resident(job.index_page));
+        job.index_slot = index->map().slot_of(job.index_page);
+        return job;
+    }
     Status make_resident(const MapPage& page) {
         for (int i = 0; i < 50; ++i) {
             auto ms = timed_frame([&](gpu::Commands& commands) {
@@ -52,5 +63,8 @@ struct Stage {
         return error("an index page did not become resident");
     }
 };
+
+// A table of `bench materials`.
+Status add_vista_steps(const BenchRequest& request, gpu::Device& device, BenchTable& table);
 
 }  // namespace loam::bench

@@ -57,6 +57,24 @@ void ground_properties(App& app, ui::Ui& ui) {
                 .tooltip = "After which the wavering repeats: smaller is busier"});
     ui.pop_disabled();
     ui::checkbox(ui, "Hide tiling", ground.tile_hiding);
+    ui::slider(
+        ui, "Vista", ground.vista_scale,
+        {.min = kVistaScale.min,
+         .max = kVistaScale.max,
+         .decimals = 1,
+         .unit = "x",
+         .logarithmic = true,
+         .tooltip =
+             "How much larger textures show from afar, so that ground keeps a structure there; 1 is off"});
+    ui.push_disabled(!ground.has_vista());
+    ui::slider(ui, "Vista from", ground.vista_distance_m,
+               {.min = kVistaDistance_m.min,
+                .max = kVistaDistance_m.max,
+                .decimals = 0,
+                .unit = "m",
+                .logarithmic = true,
+                .tooltip = "Where the larger lookup begins; from four times that on it is alone"});
+    ui.pop_disabled();
     if (ground != app.session.document().settings().ground) app.change_settings(settings);
 }
 

@@ -163,7 +163,7 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
         // 0: fine shadows, 20: both mips of a page, 21: layers with metal, 22: decals, 23: of materials,
         // 25: texels, 26: taps, 27: look-ups they are shared among, 28: the sampler's own anisotropy, 30, 31:
         // the page's layout and channels, 40: tile hiding, 41: distortion, 42: transitions, 43: layers
-        // between their mips.
+        // between their mips, 44: vista UVs.
         .constants = {{0, v.fine_shadows},
                       {20, v.two_mips},
                       {21, layers.has_metal ? 1u : 0u},
@@ -178,7 +178,8 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
                       {40, layers.ground.tile_hiding},
                       {41, layers.ground.distortion_amplitude_m > 0},
                       {42, layers.has_transitions},
-                      {43, v.smooth_layers()}},
+                      {43, v.smooth_layers()},
+                      {44, layers.ground.has_vista()}},
         .color_formats = {kPictureFormat},
         .depth_format = device_->caps().depth_stencil,
         .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};

@@ -251,13 +251,13 @@ void FrameRing::read_back(Commands& commands, Buffer& source, uint64_t offset, u
 }
 
 void FrameRing::read_back(Commands& commands, Image& source,
-                          std::function<void(std::span<const std::byte>)> done) {
+                          std::function<void(std::span<const std::byte>)> done, uint32_t mip) {
     LOAM_CHECK(current_, "readback outside of a frame");
+    const uint32_t width = std::max(source.width() >> mip, 1u), height = std::max(source.height() >> mip, 1u);
     // The depth aspect of either depth format is copied as 4 bytes a texel.
     const bool depth = (source.aspect() & VK_IMAGE_ASPECT_DEPTH_BIT) != 0;
     const VkImageAspectFlags aspect = depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
-    const uint64_t size = depth ? uint64_t(source.width()) * source.height() * 4
-                                : image_bytes(source.format(), source.width(), source.height());
+    const uint64_t size = depth ? uint64_t(width) * height * 4 : image_bytes(source.format(), width, height);
     LOAM_CHECK(size > 0 && (source.aspect() & aspect) != 0,
                fmt::format("no readback of format {}", static_cast<int>(source.format())));
     auto slice = current_->readback_memory.take(device_, size);
@@ -265,8 +265,8 @@ void FrameRing::read_back(Commands& commands, Image& source,
     commands.use({{source, Access::copy_source}});
     VkBufferImageCopy region{};
     region.bufferOffset = slice->offset;
-    region.imageSubresource = {aspect, 0, 0, 1};
-    region.imageExtent = {source.width(), source.height(), 1};
+    region.imageSubresource = {aspect, mip, 0, 1};
+    region.imageExtent = {width, height, 1};
     vkCmdCopyImageToBuffer(commands.handle(), source.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                            slice->buffer->handle(), 1, &region);
     current_->readbacks.push_back({*slice, std::move(done)});

@@ -58,8 +58,10 @@ class FrameRing {
     // (or from `finish`) with the bytes.
     void read_back(Commands& commands, Buffer& source, uint64_t offset, uint64_t size_bytes,
                    std::function<void(std::span<const std::byte>)> done);
-    // The same from mip 0, layer 0 of an image; rows are tightly packed. Of a depth image its depth, 4 bytes a texel.
-    void read_back(Commands& commands, Image& source, std::function<void(std::span<const std::byte>)> done);
+    // The same from a mip of layer 0 of an image; rows are tightly packed. Of a depth image its depth, 4
+    // bytes a texel.
+    void read_back(Commands& commands, Image& source, std::function<void(std::span<const std::byte>)> done,
+                   uint32_t mip = 0);
 
     // Timestamps of the newest finished frame, in order of recording (see platform notes: display only).
     [[nodiscard]] std::span<const PassTime> pass_times() const;

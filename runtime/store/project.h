@@ -44,12 +44,22 @@ struct LayerRoles {
     std::string broken = "scree";   // crater rims and ejecta
 };
 
+struct NumberRange {
+    double min, max;
+};
+inline constexpr NumberRange kVistaScale{1, 64}, kVistaDistance_m{1, 16'384};
+
 // How the ground's layers are laid over the whole map; each is off by default and then costs nothing.
 struct GroundSettings {
     // Distortion: the lookup of the index map moves by up to so much, at most one index texel, in waves that repeat after a period.
     double distortion_amplitude_m = 0;
     double distortion_period_m = 32;
     bool tile_hiding = false;  // textures turned by sections of four index texels
+    // Vista UVs: from a distance on textures show so much larger, alone from four times that distance on; 1:
+    // off.
+    double vista_scale = 1;
+    double vista_distance_m = 100;
+    [[nodiscard]] bool has_vista() const { return vista_scale > 1; }
     bool operator==(const GroundSettings&) const = default;
 };
 

@@ -199,17 +199,24 @@ ProjectSettings settings_of(const toml::table& root) {
     };
     const auto read_ground = [&](const toml::node& node) {
         GroundSettings& g = s.ground;
-        read_table(
-            table_of(node, "ground"), "[ground]",
-            {{"distortion_amplitude_m",
-              [&](const toml::node& n) {
-                  g.distortion_amplitude_m = number_of(n, "distortion_amplitude_m", 0, 64);
-              }},
-             {"distortion_period_m",
-              [&](const toml::node& n) {
-                  g.distortion_period_m = number_of(n, "distortion_period_m", 1, 4096);
-              }},
-             {"tile_hiding", [&](const toml::node& n) { g.tile_hiding = flag_of(n, "tile_hiding"); }}});
+        read_table(table_of(node, "ground"), "[ground]",
+                   {{"distortion_amplitude_m",
+                     [&](const toml::node& n) {
+                         g.distortion_amplitude_m = number_of(n, "distortion_amplitude_m", 0, 64);
+                     }},
+                    {"distortion_period_m",
+                     [&](const toml::node& n) {
+                         g.distortion_period_m = number_of(n, "distortion_period_m", 1, 4096);
+                     }},
+                    {"tile_hiding", [&](const toml::node& n) { g.tile_hiding = flag_of(n, "tile_hiding"); }},
+                    {"vista_scale",
+                     [&](const toml::node& n) {
+                         g.vista_scale = number_of(n, "vista_scale", kVistaScale.min, kVistaScale.max);
+                     }},
+                    {"vista_distance_m", [&](const toml::node& n) {
+                         g.vista_distance_m =
+                             number_of(n, "vista_distance_m", kVistaDistance_m.min, kVistaDistance_m.max);
+                     }}});
     };
     const auto read_texture = [&](const toml::node& node) {
         read_table(table_of(node, "texture"), "[texture]",
@@ -279,6 +286,8 @@ std::string text_of(const ProjectSettings& s) {
                        toml_real(s.ground.distortion_amplitude_m));
     out += fmt::format("distortion_period_m = {}\ntile_hiding = {}\n",
                        toml_real(s.ground.distortion_period_m), s.ground.tile_hiding);
+    out += fmt::format("vista_scale = {} # 1: off\nvista_distance_m = {}\n", toml_real(s.ground.vista_scale),
+                       toml_real(s.ground.vista_distance_m));
     for (const LayerEntry& layer : s.layers) {
         out += fmt::format("\n[[layer]]\nname = {}\n", toml_text(layer.name));
         if (layer.blend) {

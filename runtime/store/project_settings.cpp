@@ -71,7 +71,10 @@ Status check_ground(const ProjectSettings& settings) {
                                            settings.index_spacing_m);
         !status.ok())
         return error("{} (index_spacing_m): a lookup moves by one index texel at most", status.message());
-    return check_number("distortion_period_m", ground.distortion_period_m, 1, 4096);
+    LOAM_TRY(check_number("distortion_period_m", ground.distortion_period_m, 1, 4096));
+    LOAM_TRY(check_number("vista_scale", ground.vista_scale, kVistaScale.min, kVistaScale.max));
+    return check_number("vista_distance_m", ground.vista_distance_m, kVistaDistance_m.min,
+                        kVistaDistance_m.max);
 }
 
 }  // namespace

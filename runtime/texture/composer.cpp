@@ -7,6 +7,7 @@
 #include "runtime/document/document.h"
 #include "runtime/texture/distortion.h"
 #include "shaders/texture/tile_hiding.h"
+#include "shaders/texture/vista.h"
 
 namespace loam {
 
@@ -32,7 +33,7 @@ uint32_t encoded_units(const TexelRect& rect, const PageTextures& textures) {
     return units;
 }
 
-constexpr int kOneLayerKind = 1, kTransitionKind = 2;  // bits of a square's kind
+constexpr int kOneLayerKind = 1, kTransitionKind = 2, kVistaKind = 4;  // bits of a square's kind
 
 // Of a place in something that repeats every period_m: 0 … 1.
 float phase(double at_m, double period_m) {
@@ -51,14 +52,19 @@ struct Composer::Placed {
     ComposeJob job;
     shared::ComposeRect rect{};
     std::vector<Tile> tiles;  // row by row
+    [[nodiscard]] bool is_second_mip() const { return rect.units == 0; }
 };
 
 // What the shaders of a batch read: rectangles, and their squares, kind after kind.
 struct Composer::Work {
     gpu::UploadSlice rects, tiles;
     uint32_t tile_count = 0;
-    std::array<uint32_t, 4> kind_tiles{};
+    std::array<uint32_t, kKinds> kind_tiles{};
 };
+
+double vista_log2_begin(const GroundSettings& ground) {
+    return std::log2(ground.vista_distance_m / double(kVistaDistance));
+}
 
 Composer::Composer(gpu::Device& device, const Document& document, IndexMap& index, LayerSet& layers,
                    const TextureLayout& layout, const PageTextures& textures)
@@ -115,7 +121,8 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     return composer;
 }
 
-Result<gpu::Pipeline> Composer::material_pipeline(bool one_layer, bool transitions) const {
+Result<gpu::Pipeline> Composer::material_pipeline(int kind) const {
+    const bool one_layer = kind & kOneLayerKind;
     return gpu::Pipeline::create(
         device_,
         gpu::ComputeDesc{.name = one_layer ? "compose, one layer" : "compose",
@@ -129,35 +136,65 @@ Result<gpu::Pipeline> Composer::material_pipeline(bool one_layer, bool transitio
                                        {1, layers_.has_metal},
                                        {2, layers_.ground.tile_hiding},
                                        {3, bool(layers_.distortion)},
-                                       {4, transitions},
+                                       {4, bool(kind & kTransitionKind)},
+                                       {5, bool(kind & kVistaKind)},
                                        {31, textures_.placement}}});
 }
 
 Status Composer::take_settings() {
-    const std::array<bool, 3> features{layers_.ground.tile_hiding, bool(layers_.distortion),
-                                       layers_.has_transitions};
+    const std::array<bool, 4> features{layers_.ground.tile_hiding, bool(layers_.distortion),
+                                       layers_.has_transitions, layers_.ground.has_vista()};
     if (materials_[0] && features == features_) return {};
     features_ = features;
-    for (size_t kind = 0; kind < materials_.size(); ++kind) {
-        materials_[kind] = {};
-        if (kind >= kTransitionKind && !layers_.has_transitions) continue;
-        auto made = material_pipeline(kind & kOneLayerKind, kind & kTransitionKind);
+    for (int kind = 0; kind < int(kKinds); ++kind) {
+        materials_[size_t(kind)] = {};
+        if ((kind & kTransitionKind) && !layers_.has_transitions) continue;
+        if ((kind & kVistaKind) && !layers_.ground.has_vista()) continue;
+        auto made = material_pipeline(kind);
         if (!made.ok()) return made.error();
-        materials_[kind] = std::move(*made);
+        materials_[size_t(kind)] = std::move(*made);
     }
     return {};
 }
 
 shared::LayerPlace Composer::layer_place(double origin_x_m, double origin_y_m, double side_m, double texel_m,
-                                         double tile_m, int layer_texels) {
-    return {{phase(origin_x_m, tile_m), phase(origin_y_m, tile_m)},
-            float(side_m / tile_m),
-            float(std::log2(texel_m * layer_texels / tile_m)),
-            0,
-            0,
-            0,
-            0,
-            {}};
+                                         double tile_m, int layer_texels, double vista_scale) {
+    const double far_m = tile_m * vista_scale;
+    return {.offset = {phase(origin_x_m, tile_m), phase(origin_y_m, tile_m)},
+            .scale = float(side_m / tile_m),
+            .lod_bias = float(std::log2(texel_m * layer_texels / tile_m)),
+            .slot = 0,
+            .first = 0,
+            .second = 0,
+            .threshold = 0,
+            .vista_offset = {phase(origin_x_m, far_m), phase(origin_y_m, far_m)},
+            .vista_scale = float(side_m / far_m),
+            .vista_lod_bias = float(std::log2(texel_m * layer_texels / far_m)),
+            .channels = {}};
+}
+
+float Composer::vista_of(const PageId& page) const {
+    if (!layers_.ground.has_vista()) return 0;
+    return shared::vista_weight(float(std::log2(layout_.texel_m(page))),
+                                float(vista_log2_begin(layers_.ground)));
+}
+
+// The texels of the coarser page that lie where the rectangle's second mip does, from the same inputs. None
+// where both weigh the magnified lookup alike: there the mean is right.
+std::optional<ComposeJob> Composer::second_mip(const ComposeJob& job) const {
+    const auto page = layers_.ground.has_vista() ? layout_.coarser(job.page) : std::nullopt;
+    if (!page || vista_of(*page) == vista_of(job.page)) return {};
+    const WorldRect own = layout_.square(job.page), square = layout_.square(*page);
+    // A mip's border is half the page's.
+    const auto first = [&](double from, double to) {
+        return kPageBorder / 2 + (to > from ? kPagePayload / 2 : 0);
+    };
+    const glm::ivec2 at(first(square.min_x, own.min_x), first(square.min_y, own.min_y));
+    ComposeJob mip = job;
+    mip.page = *page;
+    mip.rect = {job.rect.x0 / 2 + at.x, job.rect.y0 / 2 + at.y, job.rect.x1 / 2 + at.x,
+                job.rect.y1 / 2 + at.y};
+    return mip;
 }
 
 // Where the page lies in its index page, and what each square of the rectangle holds.
@@ -178,6 +215,8 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
         .index_slot = uint32_t(job.index_slot),
         .index_vertex = glm::ivec2(job.index_page.x, job.index_page.y) * kIndexPayload - kIndexBorder,
         .index_level = job.index_page.level,
+        .vista = vista_of(job.page),
+        .mip_min = {-1, -1},
         .first_place = 0,
         .last_layer = uint32_t(layers_.count - 1),
         .first_unit = 0,
@@ -226,7 +265,8 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
                 one_layer &= other == layer;
                 transitions |= layers_.is_transition(ground.tile_hiding ? other >> kKeyLayerShift : other);
             }
-        return Placed::Tile{layer, (one_layer ? kOneLayerKind : 0) | (transitions ? kTransitionKind : 0)};
+        return Placed::Tile{layer, (one_layer ? kOneLayerKind : 0) | (transitions ? kTransitionKind : 0) |
+                                       (placed.rect.vista > 0 ? kVistaKind : 0)};
     };
     const glm::ivec2 size = placed.rect.rect_size / kTileTexels;
     const Placed::Tile whole = tile_of(seen(job.rect));
@@ -246,11 +286,15 @@ Status Composer::cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std:
     std::vector<Placed> batch;
     glm::ivec2 at(0);
     int shelf_height = 0;
+    const int step = layers_.rect_texels();
     for (const ComposeJob& job : jobs) {
-        const int width = job.rect.width(), height = job.rect.height();
-        LOAM_CHECK(width > 0 && height > 0 && width % 8 == 0 && height % 8 == 0 && job.rect.x0 % 8 == 0 &&
-                       job.rect.y0 % 8 == 0,
-                   "a page rectangle is aligned to 8 texels");
+        const std::optional<ComposeJob> mip = second_mip(job);
+        // Side by side, the second mip on the right.
+        const int own_width = job.rect.width(), height = job.rect.height();
+        const int width = own_width + (mip ? own_width / 2 : 0);
+        LOAM_CHECK(own_width > 0 && height > 0 && own_width % step == 0 && height % step == 0 &&
+                       job.rect.x0 % step == 0 && job.rect.y0 % step == 0,
+                   "a page rectangle is aligned to the blocks of both mips");
         if (at.x + width > kScratchWidth) at = {0, at.y + shelf_height}, shelf_height = 0;
         if (at.y + height > kScratchHeight) {
             LOAM_TRY(cmd_batch(ring, commands, batch, atlas));
@@ -259,6 +303,11 @@ Status Composer::cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std:
             shelf_height = 0;
         }
         batch.push_back(prepare(job, at));
+        if (mip) {
+            batch.back().rect.mip_min = {at.x + own_width, at.y};
+            batch.push_back(prepare(*mip, {at.x + own_width, at.y}));
+            batch.back().rect.units = 0;
+        }
         at.x += width;
         shelf_height = std::max(shelf_height, height);
     }
@@ -292,7 +341,7 @@ Composer::Work Composer::upload(gpu::FrameRing& ring, std::span<Placed> batch) {
     work.tiles = ring.upload(work.tile_count * sizeof(shared::ComposeTile));
     auto* rects = work.rects.as<shared::ComposeRect>();
     for (size_t i = 0; i < batch.size(); ++i) rects[i] = batch[i].rect;
-    std::array<shared::ComposeTile*, 4> next{};
+    std::array<shared::ComposeTile*, kKinds> next{};
     auto* tiles = work.tiles.as<shared::ComposeTile>();
     for (size_t kind = 0; kind < next.size(); tiles += work.kind_tiles[kind++]) next[kind] = tiles;
     for (size_t i = 0; i < batch.size(); ++i) {
@@ -316,7 +365,7 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
         const WorldRect square = layout_.square(page);
         for (size_t layer = 0; layer < layer_count; ++layer, ++out) {
             *out = layer_place(square.min_x, square.min_y, layout_.page_side_m(page), layout_.texel_m(page),
-                               layers_.tiles_m[layer], layers_.size_texels);
+                               layers_.tiles_m[layer], layers_.size_texels, layers_.ground.vista_scale);
             layers_.fill_place(int(layer), *out);
         }
     }
@@ -390,6 +439,7 @@ void Composer::cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, 
         encoded.clear();
         copied.clear();
         for (const Placed& placed : batch) {
+            if (placed.is_second_mip()) continue;
             const TexelRect& rect = placed.job.rect;
             const glm::ivec2 corner = placed.job.target * kPageTexels + glm::ivec2(rect.x0, rect.y0);
             uint64_t unit = placed.rect.first_unit + uint64_t(which) * placed.rect.units;

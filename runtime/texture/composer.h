@@ -3,9 +3,11 @@
 // a full scratch is flushed. A batch is a fixed number of dispatches and copies, whatever the number of its
 // rectangles: shaders find theirs in lists of tiles of 8x8 texels, a list for each kind of ground.
 //
-// A rectangle is aligned to 8 texels, so that it holds whole blocks of both mips. Each texel is a function of
-// its place in the page and of the inputs only: a rectangle composed alone has the bytes that it has as part
-// of the whole page. Source: Call of Duty talk, "Composition", "Compression", "Physical Textures".
+// A rectangle is aligned to 8 texels, so that it holds whole blocks of both mips. The second mip is the mean
+// of the first; where vista UVs weigh otherwise in the next coarser page, it is composed as that page's
+// texels are, so that going from page to page shows no step. Each texel is a function of its place in the
+// page and of the inputs only: a rectangle composed alone has the bytes that it has as part of the whole
+// page. Source: Call of Duty talk, "Composition", "Compression", "Physical Textures".
 #pragma once
 
 #include <array>
@@ -22,9 +24,12 @@
 
 namespace loam {
 
+// Of vista_weight (shaders/texture/vista.h).
+[[nodiscard]] double vista_log2_begin(const GroundSettings& ground);
+
 struct ComposeJob {
     PageId page;
-    TexelRect rect;        // aligned to 8
+    TexelRect rect;        // aligned to LayerSet::rect_texels
     glm::ivec2 target{0};  // physical page
     MapPage index_page;    // resident and clean
     int index_slot = 0;
@@ -50,15 +55,17 @@ class Composer {
     [[nodiscard]] uint64_t gpu_bytes() const;
     // How a layer lies in a page; also of use to tests.
     static shared::LayerPlace layer_place(double origin_x_m, double origin_y_m, double side_m, double texel_m,
-                                          double tile_m, int layer_texels);
+                                          double tile_m, int layer_texels, double vista_scale);
 
   private:
     struct Placed;  // a job with its place in scratch and in the buffers
     struct Work;
     Composer(gpu::Device& device, const Document& document, IndexMap& index, LayerSet& layers,
              const TextureLayout& layout, const PageTextures& textures);
-    [[nodiscard]] Result<gpu::Pipeline> material_pipeline(bool one_layer, bool transitions) const;
+    [[nodiscard]] Result<gpu::Pipeline> material_pipeline(int kind) const;
     [[nodiscard]] Placed prepare(const ComposeJob& job, glm::ivec2 scratch_min);
+    [[nodiscard]] float vista_of(const PageId& page) const;
+    [[nodiscard]] std::optional<ComposeJob> second_mip(const ComposeJob& job) const;
     Status cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch,
                      PageAtlas& atlas);
     [[nodiscard]] Work upload(gpu::FrameRing& ring, std::span<Placed> batch);
@@ -77,11 +84,13 @@ class Composer {
     gpu::Image scratch_;  // see shaders/texture/page_format.h
     gpu::Buffer encoded_;
     gpu::Sampler nearest_;
-    // By one layer only (1) and transitions (2): a square of 8 texels runs the one for what is in it.
-    std::array<gpu::Pipeline, 4> materials_;
+    // By one layer only (1), transitions (2) and vista UVs (4): a square of 8 texels runs the one for what is
+    // in it.
+    static constexpr size_t kKinds = 8;
+    std::array<gpu::Pipeline, kKinds> materials_;
     gpu::Pipeline encode_[2];
     std::optional<DecalPasses> decals_;
-    std::array<bool, 3> features_{};  // tile hiding, distortion, transitions: of the pipelines
+    std::array<bool, 4> features_{};  // tile hiding, distortion, transitions, vista: of the pipelines
 };
 
 }  // namespace loam

@@ -28,6 +28,9 @@ class LayerSet {
     Status take_settings(gpu::FrameRing& ring, const ProjectSettings& settings);
     // The part of a LayerPlace that is the same everywhere.
     void fill_place(int layer, shared::LayerPlace& place) const;
+    // Rectangles of pages are aligned to so many texels: blocks of both mips, or what a second mip composed
+    // for itself needs.
+    [[nodiscard]] int rect_texels() const { return ground.has_vista() ? 16 : 8; }
     [[nodiscard]] bool is_transition(uint32_t layer) const { return blends_[layer].first != layer; }
 
     gpu::Image albedo_reveal;           // RGBA8_SRGB view where possible, else UNORM: sampled in linear light

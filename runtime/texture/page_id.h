@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 
 #include "runtime/base/rect.h"
 #include "runtime/base/units.h"
@@ -54,6 +55,14 @@ struct TextureLayout {
         const double x = page.image.sector_x * kSectorSize_m + page.x * side;
         const double y = page.image.sector_y * kSectorSize_m + page.y * side;
         return {x, y, x + side, y + side};
+    }
+    // The page of twice the side that holds it, a live image's root in the default image; none above the
+    // default root.
+    [[nodiscard]] std::optional<PageId> coarser(const PageId& page) const {
+        if (page.depth > 0) return page.parent();
+        const int depth = default_log2_width + default_log2_page - 1;
+        if (!page.image.live || depth < 0) return {};
+        return PageId{{}, depth, page.image.sector_x >> 1, page.image.sector_y >> 1};
     }
 };
 

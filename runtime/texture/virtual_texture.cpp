@@ -191,13 +191,14 @@ void VirtualTexture::Impl::cmd_direct(gpu::Commands& commands, const TextureView
         d.distortion_reach = float(ground.distortion_amplitude_m / map.spacing_m(0));
         d.distortion_lod_bias = float(std::log2(kDistortionTexels / ground.distortion_period_m));
     }
+    d.vista_log2_begin = float(vista_log2_begin(ground));
     for (int level = 0; level < d.level_count; ++level)
         d.levels[level] = {int(map.level_offset(level)), map.pages_x(level), map.pages_y(level), 0};
     std::vector<shared::LayerPlace> places;
     for (int layer = 0; layer < layers.count; ++layer) {
-        places.push_back(Composer::layer_place(camera.sector.x * kSectorSize_m,
-                                               camera.sector.y * kSectorSize_m, 1.0, 1.0,
-                                               layers.tiles_m[size_t(layer)], layers.size_texels));
+        places.push_back(
+            Composer::layer_place(camera.sector.x * kSectorSize_m, camera.sector.y * kSectorSize_m, 1.0, 1.0,
+                                  layers.tiles_m[size_t(layer)], layers.size_texels, ground.vista_scale));
         layers.fill_place(layer, places.back());
     }
     commands.use({{direct_params, Access::copy_target}, {direct_places, Access::copy_target}});

@@ -247,7 +247,8 @@ void VirtualTexture::Impl::gather_dirty() {
         const PagePool::Place& p = pool.place(i);
         if (p.dirty.empty()) continue;
         // A page from coarser inputs is composed whole, as the inputs there are now may be others.
-        const TexelRect rect = p.low_res ? kWholePage : aligned_out(p.dirty, 8, kPageTexels);
+        const TexelRect rect =
+            p.low_res ? kWholePage : aligned_out(p.dirty, layers.rect_texels(), kPageTexels);
         dirty.push_back({.place = i,
                          .texels = rect.area(),
                          .shown = shown[size_t(i)],
@@ -305,8 +306,9 @@ void VirtualTexture::Impl::choose_dirty(std::vector<ComposeJob>& jobs) {
     for (const DirtyPage& d : ready) {
         const PagePool::Place& p = pool.place(d.place);
         const Inputs inputs = inputs_of(p.page);
-        jobs.push_back(
-            make_job(d.place, p.low_res ? kWholePage : aligned_out(p.dirty, 8, kPageTexels), inputs.page));
+        jobs.push_back(make_job(
+            d.place, p.low_res ? kWholePage : aligned_out(p.dirty, layers.rect_texels(), kPageTexels),
+            inputs.page));
         if (inputs.state == InputState::ready) pool.clear_low_res(d.place);
         pool.set_input_level(d.place, inputs.page.level);
         pool.clear_dirty(d.place);
@@ -428,7 +430,7 @@ void VirtualTexture::on_dirt(std::span<const WorldRect> rects) {
         for (const WorldRect& rect : rects) {
             if (rect.empty()) continue;
             const TexelRect texels = page_texels(t.layout, place.page, rect.grown(grow_m));
-            dirty = united(dirty, aligned_out(texels, 8, kPageTexels));
+            dirty = united(dirty, aligned_out(texels, t.layers.rect_texels(), kPageTexels));
         }
         if (dirty.empty()) continue;
         ++t.counted.pages_dirtied;
@@ -475,7 +477,8 @@ void VirtualTexture::on_height_dirt(std::span<const WorldRect> rects) {
         for (const auto& [changed, volume] : volumes) {
             const WorldRect seen = intersected(changed.grown(reach_m(place.page)), volume);
             if (!seen.empty())
-                dirty = united(dirty, aligned_out(page_texels(t.layout, place.page, seen), 8, kPageTexels));
+                dirty = united(dirty, aligned_out(page_texels(t.layout, place.page, seen),
+                                                  t.layers.rect_texels(), kPageTexels));
         }
         if (dirty.empty()) continue;
         ++t.counted.pages_dirtied;

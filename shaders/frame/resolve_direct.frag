@@ -17,7 +17,7 @@ void main() {
     if (kDirectTexels)
         m = direct_texels(p.rel_m, p.ground, log2_footprint);
     else
-        m = with_decals(direct_material(p.rel_m.xy, log2_footprint), p.rel_m, p.ground, log2_footprint);
+        m = with_decals(direct_material(p.rel_m.xy, log2_footprint, p.log2_short), p.rel_m, p.ground, log2_footprint);
     Surface s = Surface(m.albedo, bent_normal(p.ground, m.normal), m.gloss, m.occlusion, m.metalness);
     vec2 at_m = direct.camera_offset_m + p.rel_m.xy, sector = floor(at_m * (1.0 / 64.0));
     out_color = vec4(lit_pixel(p, s, m.channels, direct.camera_sector + ivec2(sector), at_m - sector * 64.0), 1.0);

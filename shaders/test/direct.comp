@@ -13,7 +13,7 @@ layout(push_constant, scalar) uniform Push { uint count; };
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= count) return;
-    MaterialSample m = direct_material(queries[i].rel_m, queries[i].log2_texel);
+    MaterialSample m = direct_material(queries[i].rel_m, queries[i].log2_texel, queries[i].log2_texel);
     answers[i * 4u] = vec4(m.albedo, m.gloss);
     answers[i * 4u + 1u] = vec4(m.normal, m.occlusion, m.metalness);
     answers[i * 4u + 2u] = m.channels;

@@ -11,6 +11,7 @@ layout(constant_id = 1) const bool kHasMetal = false;
 layout(constant_id = 2) const bool kTileHiding = false;
 layout(constant_id = 3) const bool kDistortion = false;
 layout(constant_id = 4) const bool kTransitions = false;
+layout(constant_id = 5) const bool kVista = false;
 const bool kSmoothMips = false;
 
 layout(binding = 0) uniform sampler2DArray layer_albedo;
@@ -72,6 +73,7 @@ void main() {
     c.index_step = 1.0 / rect.index_scale;
     c.position = position;
     c.log2_texel = 0.0;
+    c.vista = rect.vista;
     MaterialSample m = evaluate_material(c);
 
     ivec2 target = rect.scratch_min + at;

@@ -18,6 +18,9 @@ struct LayerPlace {
     uint first;      // the layer itself; of a transition: from
     uint second;     // the layer itself; of a transition: to
     float threshold; // of a transition
+    vec2 vista_offset;  // of the magnified lookup (vista.h), as offset, scale and lod_bias of the plain one
+    float vista_scale;
+    float vista_lod_bias;
     vec4 channels;   // amounts of scattering, thermal, emissive, glint; of a transition: those of its layers count
 };
 
@@ -36,10 +39,13 @@ struct ComposeRect {
     float distortion_scale;
     float distortion_reach; // index texels of the level
     float distortion_lod;
+    float vista;    // weight of the magnified lookup; above 0 only in squares of that kind
+    ivec2 mip_min;  // where the second mip lies in scratch as a rectangle composed for itself; x < 0: it is
+                    // the mean
     uint first_place;    // of the rectangle's layer places
     uint last_layer;     // larger indices in the map count as this one
     uint first_unit;     // of its output: blocks, or texels of RGBA8; mip by mip, texture by texture
-    uint units;          // a texture
+    uint units;          // a texture; 0: a second mip, which is read with the rectangle it belongs to
 };
 
 // Work is listed in squares of 8 texels, so that a dispatch holds any number of rectangles, and those of a

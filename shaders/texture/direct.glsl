@@ -14,13 +14,16 @@
 // | +7 | layers' metalness | LayerSet::metalness, LayerSet::sampler |
 // | +9 | distortion map, sampler2DArray | LayerSet::distortion_map(), LayerSet::sampler |
 // Specialisation constants: 21 where a layer has metal (LayerSet::has_metal), 40 tile hiding, 41 distortion,
-// 42 transitions, 43 layers blended between their mips (LayerSet::smooth_sampler), 31 the optional channels (page_channels.glsl).
+// 42 transitions, 44 vista UVs, 43 layers blended between their mips (LayerSet::smooth_sampler), 31 the optional channels (page_channels.glsl).
 //
-//     MaterialSample m = direct_material(rel.xy, log2_footprint); // camera-relative metres; log2 of metres a sample
+//     MaterialSample m = direct_material(rel.xy, log2_footprint, log2_distance_texel);
+// rel: camera-relative metres; log2 of metres a sample, and of the texel that vista UVs take the distance from (vista.h): of a
+// supersampled pixel not the sample's.
 #ifndef LOAM_TEXTURE_DIRECT_GLSL
 #define LOAM_TEXTURE_DIRECT_GLSL
 #include "shaders/texture/compose_io.h"
 #include "shaders/texture/texture_io.h"
+#include "shaders/texture/vista.h"
 
 #ifndef DIRECT_FIRST_SLOT
 #define DIRECT_FIRST_SLOT 0
@@ -30,6 +33,7 @@ layout(constant_id = 40) const bool kTileHiding = false;
 layout(constant_id = 41) const bool kDistortion = false;
 layout(constant_id = 42) const bool kTransitions = false;
 layout(constant_id = 43) const bool kSmoothMips = false;
+layout(constant_id = 44) const bool kVista = false;
 const bool kOneLayer = false;
 layout(binding = DIRECT_FIRST_SLOT + 0, scalar) readonly buffer DirectParamsBuffer { DirectParams direct; };
 layout(binding = DIRECT_FIRST_SLOT + 1, scalar) readonly buffer DirectPlaces { LayerPlace direct_places[]; };
@@ -48,7 +52,7 @@ layout(binding = DIRECT_FIRST_SLOT + 9) uniform sampler2DArray direct_distortion
 #define MATERIAL_PLACE(layer) direct_places[layer]
 #include "shaders/texture/material.glsl"
 
-MaterialSample direct_material(vec2 rel_m, float log2_footprint) {
+MaterialSample direct_material(vec2 rel_m, float log2_footprint, float log2_distance_texel) {
     vec2 at_m = direct.camera_offset_m + rel_m; // from the corner of the camera's sector
     vec2 sector = floor(at_m * (1.0 / 64.0));
     vec2 in_sector = (at_m - sector * 64.0) * direct.texels_per_m;
@@ -93,6 +97,7 @@ MaterialSample direct_material(vec2 rel_m, float log2_footprint) {
     c.index_step = float(1 << level) / direct.texels_per_m;
     c.position = at_m;
     c.log2_texel = log2_footprint;
+    c.vista = vista_weight(log2_distance_texel, direct.vista_log2_begin);
     return evaluate_material(c);
 }
 #endif

@@ -32,7 +32,7 @@ MaterialSample direct_texels(vec3 at_rel_m, vec3 ground, float log2_footprint) {
         vec3 albedo = vec3(0);
         for (int k = 0; k < count; ++k) {
             vec2 fine_m = center_m + (second ? texel_m * (vec2(k & 1, k >> 1) - 0.5) : vec2(0));
-            MaterialSample m = with_decals(direct_material(fine_m, log2_texel),
+            MaterialSample m = with_decals(direct_material(fine_m, log2_texel, second ? log2_texel + 1.0 : log2_texel),
                                            vec3(fine_m, at_rel_m.z + dot(slope, fine_m - rel_m)), ground, log2_texel);
             float part = 1.0 / float(count);
             albedo += clamp(m.albedo, 0.0, 1.0) * part; // a mip of roots averages the squares

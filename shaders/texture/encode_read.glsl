@@ -1,5 +1,5 @@
 // What the two encoders share: a thread a unit (block or texel), a texture a workgroup's y, and a texel of mip kMip of a rectangle
-// of a page texture, its channels gathered from scratch (page_format.h); mip 1 is the mean of four texels.
+// of a page texture, its channels gathered from scratch (page_format.h); mip 1 is the mean of four texels, or was composed for itself.
 // Specialisation constants: 0: the mip, 30: the layout, kPageRows or kPagePairs.
 #include "shaders/texture/page_format.h"
 layout(constant_id = 0) const int kMip = 0;
@@ -9,10 +9,19 @@ layout(binding = 2, scalar) readonly buffer Rects { ComposeRect rects[]; };
 layout(binding = 3, scalar) readonly buffer Tiles { ComposeTile tiles[]; };
 layout(push_constant, scalar) uniform Push { EncodePush push; };
 
+// Where a unit of a tile lies: units a texel square's side (2 or 1 blocks, 4 texels of mip 1 …) as a power of two.
+struct Unit {
+    ivec2 at;          // of the rectangle's mip, units
+    ivec2 scratch_min;
+    bool as_composed;  // scratch holds the mip's own texels there
+    bool exists;
+    uint output_index;
+};
+
 // Albedo is stored as a square root: its mip averages the square.
-vec3 read_layer(ivec2 scratch_min, ivec2 texel, int layer) {
-    if (kMip == 0) return texelFetch(scratch, ivec3(scratch_min + texel, layer), 0).rgb;
-    ivec3 at = ivec3(scratch_min + texel * 2, layer);
+vec3 read_layer(Unit unit, ivec2 texel, int layer) {
+    if (unit.as_composed) return texelFetch(scratch, ivec3(unit.scratch_min + texel, layer), 0).rgb;
+    ivec3 at = ivec3(unit.scratch_min + texel * 2, layer);
     precise vec3 a = texelFetch(scratch, at, 0).rgb;
     precise vec3 b = texelFetch(scratch, at + ivec3(1, 0, 0), 0).rgb;
     precise vec3 c = texelFetch(scratch, at + ivec3(0, 1, 0), 0).rgb;
@@ -22,26 +31,23 @@ vec3 read_layer(ivec2 scratch_min, ivec2 texel, int layer) {
     return layer == 0 ? mean_square : mean;
 }
 
-vec4 read_texel(ivec2 scratch_min, ivec2 texel, int which) {
-    vec3 own = read_layer(scratch_min, texel, which);
+vec4 read_texel(Unit unit, ivec2 texel, int which) {
+    vec3 own = read_layer(unit, texel, which);
     if (kPageLayout == kPageRows) return vec4(own, 1.0);
-    vec3 metal = read_layer(scratch_min, texel, 2);
+    vec3 metal = read_layer(unit, texel, 2);
     return which == 0 ? vec4(own, metal.r) : vec4(own.bgr, metal.g);
 }
 
-// Where a unit of a tile lies: units a texel square's side (2 or 1 blocks, 4 texels of mip 1 …) as a power of two.
-struct Unit {
-    ivec2 at;          // of the rectangle's mip, units
-    ivec2 scratch_min;
-    uint output_index;
-};
 Unit unit_of(uint thread, int log2_side, int which, int log2_unit_texels) {
     uint tile = tiles[thread >> (2 * log2_side)].place;
     ComposeRect rect = rects[tile >> 10u];
     int inside = int(thread) & ((1 << (2 * log2_side)) - 1);
     Unit unit;
     unit.at = (ivec2(tile & 31u, tile >> 5u & 31u) << log2_side) + ivec2(inside & ((1 << log2_side) - 1), inside >> log2_side);
-    unit.scratch_min = rect.scratch_min;
+    bool own_mip = kMip == 1 && rect.mip_min.x >= 0;
+    unit.scratch_min = own_mip ? rect.mip_min : rect.scratch_min;
+    unit.as_composed = kMip == 0 || own_mip;
+    unit.exists = rect.units > 0u;
     ivec2 size = rect.rect_size >> (log2_unit_texels + kMip);
     ivec2 mip0 = rect.rect_size >> log2_unit_texels;
     uint before = kMip == 0 ? 0u : uint(mip0.x * mip0.y) * kMip0Units;

@@ -6,7 +6,7 @@
 //   MATERIAL_DISTORTION                                the distortion map, a sampler2DArray (any one where kDistortion is false)
 //   MATERIAL_PLACE(layer)                              the LayerPlace of a layer
 //   kOneLayer, kHasMetal, kTileHiding, kDistortion,
-//   kTransitions, kSmoothMips                          constants (specialisation or not); the last needs a sampler that blends mips
+//   kTransitions, kVista, kSmoothMips                  constants (specialisation or not); the last needs a sampler that blends mips
 #ifndef LOAM_TEXTURE_MATERIAL_GLSL
 #define LOAM_TEXTURE_MATERIAL_GLSL
 #include "shaders/texture/compose_io.h"
@@ -49,6 +49,7 @@ struct MaterialCorners {
     float index_step;   // an index texel of that level, in units of position
     vec2 position;      // what MATERIAL_PLACE scales
     float log2_texel;   // added to a place's lod_bias
+    float vista;        // weight of the magnified lookup (vista.h), with kVista
 };
 
 // How far the lookup of index and tint moves, -1 … 1 of the reach. Source: Call of Duty talk, "Distortion".
@@ -83,6 +84,21 @@ LayerSample sample_textures(MaterialCorners c, uint key, LayerPlace place) {
         precise vec2 n = s.surface.xy - 128.0 / 255.0;
         precise vec2 seen = vec2(turn.x * n.x + turn.y * n.y, turn.x * n.y - turn.y * n.x);
         s.surface.xy = seen + 128.0 / 255.0;
+    }
+    if (kVista) { // never turned: sections are smaller than its repeats
+        precise vec2 far = place.vista_offset + c.position * place.vista_scale;
+        vec3 far_uv = vec3(far, float(place.slot));
+        float far_lod = layer_lod(place.vista_lod_bias + c.log2_texel, kSmoothMips);
+        vec3 far_albedo = textureLod(MATERIAL_ALBEDO, far_uv, far_lod).rgb;
+        vec4 far_surface = textureLod(MATERIAL_NORMAL, far_uv, far_lod);
+        precise vec3 albedo = s.albedo_reveal.rgb * (1.0 - c.vista) + far_albedo * c.vista;
+        precise vec4 surface = s.surface * (1.0 - c.vista) + far_surface * c.vista;
+        s.albedo_reveal.rgb = albedo;
+        s.surface = surface;
+        if (kHasMetal) {
+            precise float metalness = s.metalness * (1.0 - c.vista) + textureLod(MATERIAL_METAL, far_uv, far_lod).r * c.vista;
+            s.metalness = metalness;
+        }
     }
     return s;
 }

@@ -13,5 +13,6 @@ void main() {
     if (gl_GlobalInvocationID.x >= push.tile_count << (2 * kLog2Side)) return;
     int which = int(gl_WorkGroupID.y);
     Unit unit = unit_of(gl_GlobalInvocationID.x, kLog2Side, which, 0);
-    texels[unit.output_index] = packUnorm4x8(read_texel(unit.scratch_min, unit.at, which));
+    if (!unit.exists) return;
+    texels[unit.output_index] = packUnorm4x8(read_texel(unit, unit.at, which));
 }

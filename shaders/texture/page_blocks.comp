@@ -15,16 +15,17 @@ void main() {
     if (gl_GlobalInvocationID.x >= push.tile_count << (2 * kLog2Side)) return;
     int which = int(gl_WorkGroupID.y);
     Unit unit = unit_of(gl_GlobalInvocationID.x, kLog2Side, which, 2);
+    if (!unit.exists) return;
     vec3 weights = push.weights[which].xyz;
     if (kPageLayout == kPagePairs) {
         vec4 texels[16];
-        for (int i = 0; i < 16; ++i) texels[i] = read_texel(unit.scratch_min, unit.at * 4 + ivec2(i & 3, i >> 2), which);
+        for (int i = 0; i < 16; ++i) texels[i] = read_texel(unit, unit.at * 4 + ivec2(i & 3, i >> 2), which);
         uvec4 block = bc3_encode(texels, weights);
         blocks[unit.output_index * 2u] = block.xy;
         blocks[unit.output_index * 2u + 1u] = block.zw;
     } else {
         vec3 texels[16];
-        for (int i = 0; i < 16; ++i) texels[i] = read_texel(unit.scratch_min, unit.at * 4 + ivec2(i & 3, i >> 2), which).rgb;
+        for (int i = 0; i < 16; ++i) texels[i] = read_texel(unit, unit.at * 4 + ivec2(i & 3, i >> 2), which).rgb;
         blocks[unit.output_index] = bc1_encode(texels, weights);
     }
 }

@@ -98,6 +98,7 @@ struct DirectParams {
     float distortion_scale; // repeats a metre
     float distortion_reach; // texels of level 0
     float distortion_lod_bias; // log2 of the distortion's texels a metre
+    float vista_log2_begin;    // of vista_weight
     ivec4 levels[kMaxIndexLevels]; // x: first entry in the page table, y: pages x, z: pages y, w: unused
 };
 

@@ -34,6 +34,13 @@ GroundSettings everything_on() {
     return {.distortion_amplitude_m = 0.45, .distortion_period_m = 11.3, .tile_hiding = true};
 }
 
+// Of compare_pages' pages the coarser ones have some or all of it.
+GroundSettings with_vista(GroundSettings ground) {
+    ground.vista_scale = 6;
+    ground.vista_distance_m = 20;
+    return ground;
+}
+
 PlainWorld plain_world(World& w, const RandomMap& map, bool flat_layers) {
     PlainWorld plain{.map = map, .tiles_m = w.layers->tiles_m, .ground = w.document().settings().ground};
     const std::vector<LayerEntry>& entries = w.document().settings().layers;
@@ -119,7 +126,8 @@ Compared compare_pages(bool flat_layers, const GroundSettings& ground = {},
 
 // Rounding to a byte is half a step; the tint's cubic (ompv.h) is the rest.
 TEST_F(ComposerTest, FlatLayersAreWithinOneStepOfThePlainComposer) {
-    for (const GroundSettings& ground : {GroundSettings{}, everything_on()}) {
+    for (const GroundSettings& ground :
+         {GroundSettings{}, everything_on(), with_vista({}), with_vista(everything_on())}) {
         const Difference d = compare_pages(true, ground).difference;
         EXPECT_GT(d.count, 0);
         EXPECT_LE(d.worst, 1.0);
@@ -130,7 +138,8 @@ TEST_F(ComposerTest, FlatLayersAreWithinOneStepOfThePlainComposer) {
 // A device filters with 8 bits of fraction at least, and a reveal's error counts four times where it cuts an
 // edge.
 TEST_F(ComposerTest, RoughLayersAreWithinTheFiltersTolerance) {
-    for (const GroundSettings& ground : {GroundSettings{}, everything_on()}) {
+    for (const GroundSettings& ground :
+         {GroundSettings{}, everything_on(), with_vista({}), with_vista(everything_on())}) {
         const Compared compared = compare_pages(false, ground);
         const Difference& d = compared.difference;
         EXPECT_GT(d.count, 0);
@@ -149,6 +158,63 @@ TEST_F(ComposerTest, AReferenceWithoutTheSettingsDiffers) {
     less = everything_on();
     less.distortion_amplitude_m *= 0.9;
     EXPECT_GT(compare_pages(true, everything_on(), less).difference.worst, 20);
+    less = with_vista({});
+    less.vista_distance_m *= 1.2;
+    EXPECT_GT(compare_pages(false, with_vista({}), less).difference.worst, 10);
+}
+
+// Where the magnified lookup weighs otherwise in the coarser page, a page's second mip is made of that page's
+// texels, so that nothing is seen of the step; the mean of the first would be far off. Elsewhere it is the
+// mean.
+TEST_F(ComposerTest, WithVistaTheSecondMipIsWhatTheCoarserPageShows) {
+    World w(small_desc(PageFormat::rgba8), false, {.layers = 9, .ground = with_vista({})});
+    write_random_map(w);
+    w.want_some_pages();
+    w.run_frames(14);
+    const TextureLayout& layout = w.texture->layout();
+    const int row = w.texture->desc().pages_per_side * kPageTexels;
+    const std::vector<uint32_t> mip0 = w.read_u32(w.texture->atlas(0)),
+                                mip1 = w.read_u32(w.texture->atlas(0), 1);
+    const auto green = [](uint32_t texel) { return double(texel >> 8 & 0xff); };
+    const auto corner = [&](const PageId& page) {
+        const int place = w.texture->place_of(page), side = w.texture->desc().pages_per_side;
+        EXPECT_GE(place, 0);
+        return glm::ivec2(place % side, place / side) * kPageTexels;
+    };
+    int steps = 0;
+    for (int depth = 6; depth > 0; --depth) {
+        const PageId page{{true, 1, 1}, depth, 20 >> (6 - depth), 31 >> (6 - depth)};
+        const PageId coarser = *layout.coarser(page);
+        const double weight = plain_vista(with_vista({}), layout.texel_m(page)),
+                     next = plain_vista(with_vista({}), layout.texel_m(coarser));
+        const glm::ivec2 own = corner(page), from = corner(coarser);
+        double to_coarser = 0, to_mean = 0, count = 0;
+        for (int y = 0; y < kPagePayload / 2; ++y)
+            for (int x = 0; x < kPagePayload / 2; ++x, ++count) {
+                const glm::ivec2 first = own + kPageBorder + glm::ivec2(2 * x, 2 * y);
+                double square = 0;
+                for (int k = 0; k < 4; ++k)
+                    square +=
+                        0.25 * std::pow(green(mip0[size_t((first.y + k / 2) * row + first.x + k % 2)]), 2);
+                const double second = green(mip1[size_t(first.y / 2 * (row / 2) + first.x / 2)]);
+                const glm::ivec2 there =
+                    from + kPageBorder + glm::ivec2(page.x & 1, page.y & 1) * (kPagePayload / 2);
+                to_coarser += std::abs(second - green(mip0[size_t((there.y + y) * row + there.x + x)]));
+                to_mean += std::abs(second - std::sqrt(square));
+            }
+        to_coarser /= count, to_mean /= count;
+        std::printf(
+            "texel %.0f mm, vista %.2f then %.2f: off the coarser page %.2f/255, off the mean %.2f/255\n",
+            layout.texel_m(page) * 1000, weight, next, to_coarser, to_mean);
+        if (weight == next) {
+            EXPECT_LT(to_mean, 0.6) << "rounded twice";
+        } else {
+            EXPECT_LT(to_coarser, 0.05) << "what is left: the index map's next level";
+            EXPECT_GT(to_mean, 1.5) << "the step that there would be";
+            ++steps;
+        }
+    }
+    EXPECT_GE(steps, 2);
 }
 
 TEST_F(ComposerTest, TransitionsAreAsThePlainComposerHasThem) {
@@ -195,21 +261,24 @@ TEST_F(ComposerTest, VerticesAndTiesAreAsThePlainComposerHasThem) {
 }
 
 // Dirt of an index edit reaches as far as distortion does: nothing that was composed before is stale.
-TEST_F(ComposerTest, EditsUnderDistortionAndTileHidingLeaveNoStaleTexel) {
-    World w(small_desc(PageFormat::rgba8), false, {.ground = everything_on()});
-    w.want_some_pages();
-    w.run_frames(14);
-    for (int i = 0; i < 12; ++i) {
-        PaintCommand paint;
-        paint.dabs = {glm::dvec2(w.view.camera_m) + glm::dvec2(w.fixture.real(-6, 6), w.fixture.real(-6, 6))};
-        paint.radius_m = w.fixture.real(0.2, 2);
-        paint.layer = i % 2 ? "scree" : "dirt";
-        paint.tint = glm::dvec3(w.fixture.real(0, 1), 0.5, 0.25);
-        w.on_dirt(w.fixture.apply(paint));
-        w.run_frames(3);
+TEST_F(ComposerTest, EditsUnderEverySettingLeaveNoStaleTexel) {
+    for (const GroundSettings& ground : {everything_on(), with_vista(everything_on())}) {
+        World w(small_desc(PageFormat::rgba8), false, {.ground = ground});
+        w.want_some_pages();
+        w.run_frames(14);
+        for (int i = 0; i < 12; ++i) {
+            PaintCommand paint;
+            paint.dabs = {glm::dvec2(w.view.camera_m) +
+                          glm::dvec2(w.fixture.real(-6, 6), w.fixture.real(-6, 6))};
+            paint.radius_m = w.fixture.real(0.2, 2);
+            paint.layer = i % 2 ? "scree" : "dirt";
+            paint.tint = glm::dvec3(w.fixture.real(0, 1), 0.5, 0.25);
+            w.on_dirt(w.fixture.apply(paint));
+            w.run_frames(3);
+        }
+        w.run_frames(20);
+        EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
     }
-    w.run_frames(20);
-    EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
 }
 
 // Settings change live: pages follow, and what is off takes no memory.

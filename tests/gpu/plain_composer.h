@@ -135,9 +135,15 @@ inline double plain_cover(double alpha, double reveal) {
     return std::clamp((alpha * (1 + kSoftness) - (1 - reveal)) / kSoftness, 0.0, 1.0);
 }
 
+// How much of the magnified lookup is seen in texels that are meant for so far away: 5 feet a millimetre.
+inline double plain_vista(const GroundSettings& g, double texel_m) {
+    if (g.vista_scale <= 1) return 0;
+    return std::clamp(std::log2(texel_m * 1524 / g.vista_distance_m) / 2, 0.0, 1.0);
+}
+
 // One layer's textures at a place, turned as the section says.
-inline Channels plain_layer(const PlainWorld& w, int layer, const Section& section, glm::dvec2 world,
-                            double texel_m) {
+inline Channels plain_near_layer(const PlainWorld& w, int layer, const Section& section, glm::dvec2 world,
+                                 double texel_m) {
     const double tile_m = w.tiles_m[size_t(layer)];
     const LayerTextures& textures = w.layers[size_t(layer)];
     const int mip = nearest_mip(std::log2(texel_m * textures.size_texels / tile_m));
@@ -152,6 +158,20 @@ inline Channels plain_layer(const PlainWorld& w, int layer, const Section& secti
     const double x = c[3] - 128 / 255.0, y = c[4] - 128 / 255.0;
     c[3] = 128 / 255.0 + std::cos(angle) * x + std::sin(angle) * y;
     c[4] = 128 / 255.0 - std::sin(angle) * x + std::cos(angle) * y;
+    return c;
+}
+
+// With the magnified lookup of albedo, normal, gloss and occlusion over it, which nothing turns.
+inline Channels plain_layer(const PlainWorld& w, int layer, const Section& section, glm::dvec2 world,
+                            double texel_m) {
+    Channels c = plain_near_layer(w, layer, section, world, texel_m);
+    const double share = plain_vista(w.ground, texel_m),
+                 far_m = w.tiles_m[size_t(layer)] * w.ground.vista_scale;
+    if (share <= 0) return c;
+    const LayerTextures& textures = w.layers[size_t(layer)];
+    const Channels far = layer_at(textures, nearest_mip(std::log2(texel_m * textures.size_texels / far_m)),
+                                  world.x / far_m, world.y / far_m);
+    for (size_t k = 0; k < 7; ++k) c[k] += (far[k] - c[k]) * share;
     return c;
 }
 

@@ -34,7 +34,8 @@ inline std::vector<Answer> ask(World& w, const char* shader, const std::vector<Q
                                                {31, w.texture->textures().placement},
                                                {40, w.layers->ground.tile_hiding},
                                                {41, w.layers->ground.distortion_amplitude_m > 0},
-                                               {42, w.layers->has_transitions}}}));
+                                               {42, w.layers->has_transitions},
+                                               {44, w.layers->ground.has_vista()}}}));
     auto answers = need(gpu::Buffer::create(device, {.name = "answers",
                                                      .size_bytes = queries.size() * sizeof(Answer),
                                                      .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));

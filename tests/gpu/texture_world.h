@@ -96,13 +96,14 @@ struct World {
         texture->request_pages(pages);
     }
     template <typename Image>
-    std::vector<uint32_t> read_u32(Image& image) {
+    std::vector<uint32_t> read_u32(Image& image, uint32_t mip = 0) {
         std::vector<uint32_t> got;
         gpu::Frame* frame = need(ring->begin());
-        ring->read_back(frame->commands, image, [&](std::span<const std::byte> bytes) {
+        const auto take = [&](std::span<const std::byte> bytes) {
             got.resize(bytes.size() / 4);
             std::memcpy(got.data(), bytes.data(), bytes.size());
-        });
+        };
+        ring->read_back(frame->commands, image, take, mip);
         need(ring->finish(*frame));
         return got;
     }

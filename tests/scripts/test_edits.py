@@ -143,10 +143,13 @@ def test_settings_of_the_ground_are_set_and_refused(plain):
         p.set("ground.distortion_period_m", 12)
         with pytest.raises(loam.Error, match="unknown setting"):
             p.set("ground.colour", 1)
+        p.set("ground.vista_scale", 8)
+        with pytest.raises(loam.Error, match="vista_scale is 0, must be 1"):
+            p.set("ground.vista_scale", 0)
         with pytest.raises(loam.Error, match="one index texel"):
             p.set("ground.distortion_amplitude_m", 1000)
     text = (plain / "project.toml").read_text()
-    assert "tile_hiding = false" in text and "distortion_period_m = 12.0" in text
+    assert "tile_hiding = false" in text and "distortion_period_m = 12.0" in text and "vista_scale = 8.0" in text
     assert "must be true or false" in fails_with_one_sentence(run_loam("set", plain, "ground.tile_hiding", "1"))
     assert "must be a number" in fails_with_one_sentence(run_loam("set", plain, "sun.azimuth_rad", "north"))
 

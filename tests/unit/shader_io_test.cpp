@@ -98,8 +98,10 @@ TEST(ShaderIo, TileDraw) {
 
 TEST(ShaderIo, LayerPlace) {
     expect_layout("LayerPlace", sizeof(shared::LayerPlace),
-                  {AT(LayerPlace, offset), AT(LayerPlace, scale), AT(LayerPlace, lod_bias), AT(LayerPlace, slot),
-                   AT(LayerPlace, first), AT(LayerPlace, second), AT(LayerPlace, threshold), AT(LayerPlace, channels)});
+                  {AT(LayerPlace, offset), AT(LayerPlace, scale), AT(LayerPlace, lod_bias),
+                   AT(LayerPlace, slot), AT(LayerPlace, first), AT(LayerPlace, second),
+                   AT(LayerPlace, threshold), AT(LayerPlace, vista_offset), AT(LayerPlace, vista_scale),
+                   AT(LayerPlace, vista_lod_bias), AT(LayerPlace, channels)});
 }
 
 TEST(ShaderIo, EncodePush) {

@@ -200,7 +200,11 @@ TEST(project, comes_back_as_it_was) {
     s.default_layer = 2;
     s.layers[1].tile_m = 1.0 / 3;
     s.layers.push_back({.name = "t", .file = "", .blend = LayerEntry::Blend{s.layers[0].name, s.layers[1].name, 1.0 / 3, true}});
-    s.ground = {.distortion_amplitude_m = 0.2, .distortion_period_m = 12.5, .tile_hiding = true};
+    s.ground = {.distortion_amplitude_m = 0.2,
+                .distortion_period_m = 12.5,
+                .tile_hiding = true,
+                .vista_scale = 7.5,
+                .vista_distance_m = 1.0 / 3 + 40};
     s.layers[1].channels = {0, 0.25, 0, 1.0 / 3};
     s.channels = {Channel::glint, Channel::scattering};
     ASSERT_TRUE(save_project(folder.path(), s).ok());
@@ -237,13 +241,16 @@ TEST(project, errors_are_sentences_with_the_line) {
         {good + "[[layer]]\nfile = \"a\"\n", "a layer needs a name"},
         {good + "[[layer]]\nname = \"a\"\n[[layer]]\nname = \"a\"\n", "two layers are called \"a\""},
         {good + "[[layer]]\nname = \"a\"\nfile = \"../../etc/passwd\"\n", "outside the project"},
-        {good + "[[layer]]\nname = \"a\"\nthreshold = 0.5\n", ":6: threshold and removed belong to layers with a blend"},
+        {good + "[[layer]]\nname = \"a\"\nthreshold = 0.5\n",
+         ":6: threshold and removed belong to layers with a blend"},
         {good + "[[layer]]\nname = \"t\"\nblend = [\"a\", \"b\"]\n", "there is no layer \"a\" with textures"},
         {good + "[[layer]]\nname = \"t\"\nblend = \"a\"\n", ":6: blend must be [from, to]"},
         {good + "[[layer]]\nname = \"t\"\nblend = [\"a\", \"b\"]\nthreshold = 2\n", ":7: threshold is 2"},
         {good + "[ground]\ntile_hiding = 1\n", ":5: tile_hiding must be true or false"},
         {good + "[ground]\ndistortion_amplitude_m = 1.5\n", "must be 0 … 1 (index_spacing_m)"},
         {good + "[ground]\ndistortion_amplitude_m = nan\n", ":5: distortion_amplitude_m is nan"},
+        {good + "[ground]\nvista_scale = 0.5\n", ":5: vista_scale is 0.5, must be 1 … 64"},
+        {good + "[ground]\nvista_distance_m = inf\n", ":5: vista_distance_m is inf"},
         {good + "[ground]\ndistortion_period_m = 0\n", ":5: distortion_period_m is 0"},
         {good + "[texture]\nchannels = [\"glow\"]\n",
          ":5: unknown channel \"glow\" in [texture] (known: scattering, thermal, emissive, glint)"},

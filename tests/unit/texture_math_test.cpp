@@ -99,7 +99,8 @@ TEST(PageEncoding, AFlatNormalIsExactAlsoInSixBits) {
 
 TEST(LayerPlace, PrecisionHoldsAtTheFarCorner) {
     const double tile_m = 1.7, corner_m = 16'383.0;
-    const LayerPlace place = Composer::layer_place(corner_m, corner_m, 1.0, 1.0 / kPagePayload, tile_m, 1024);
+    const LayerPlace place =
+        Composer::layer_place(corner_m, corner_m, 1.0, 1.0 / kPagePayload, tile_m, 1024, 16.0);
     const double exact = corner_m / tile_m - std::floor(corner_m / tile_m);
     EXPECT_NEAR(place.offset.x, exact, 1e-6);
     // A quarter of a layer texel anywhere in the page.
