@@ -7,6 +7,7 @@
 #include <cstring>
 #include <type_traits>
 
+#include "editor/fill.h"
 #include "editor/image_file.h"
 #include "editor/picture.h"
 #include "runtime/base/log.h"
@@ -17,6 +18,7 @@ namespace loam {
 namespace {
 
 constexpr uint32_t kFramesInFlight = 2;
+constexpr int64_t kLargestFill = int64_t(2048) * 2048;  // texels of one command
 // Feedback is read back three frames later: the picture rests once so many frames in a row found nothing to
 // improve.
 constexpr int kRestingFrames = 4;
@@ -102,6 +104,20 @@ FrameSettings reference_frame(FrameSettings frame) {
 // --- edits ---
 
 Result<Dirt> Session::apply(const Command& command) {
+    const auto* large = std::get_if<FillCommand>(&command.body);
+    if (!large || document_->fill_texels(*large).area() <= kLargestFill) return apply_one(command);
+    LOAM_TRY(check_command(command));
+    Fill fill(*this, *large);
+    Dirt all;
+    while (!fill.done()) {
+        auto dirt = fill.step();
+        if (!dirt) return dirt;
+        append_dirt(all, *dirt);
+    }
+    return all;
+}
+
+Result<Dirt> Session::apply_one(const Command& command) {
     auto dirt = document_->apply(command);
     if (!dirt) return dirt;
     if (renderer_) renderer_->on_dirt(*dirt);

@@ -72,8 +72,10 @@ class Session {
     gpu::Device* device() { return device_.get(); }
     gpu::FrameRing* ring() { return ring_.get(); }
 
-    // One door for edits: applies, tells the renderer, records.
+    // One door for edits: applies, tells the renderer, records. A fill that is larger than one command may be
+    // is a group of them (fill.h).
     Result<Dirt> apply(const Command& command);
+    Result<Dirt> apply_one(const Command& command);
     // Settings that may change (sun, ground, layers): the document's, and what is rendered from now on.
     Status change_settings(const ProjectSettings& settings);
     // The layer can be painted with, and is drawn, once this returns; a renderer loads the layers again.

@@ -271,6 +271,13 @@ void bind_edits(py::class_<Project>& c) {
         py::arg("radius_m") = 5.0, py::arg("strength") = 1.0, py::arg("hardness") = 0.5,
         py::arg("tint") = py::none(), py::arg("seed") = 0, py::arg("group") = 0);
     c.def(
+        "fill", [](Project& p, const py::kwargs& keywords) { return apply_keywords(p, "fill", keywords); },
+        "Paints all of a rectangle, or of the map, or only the texels of one layer: rect=(x0, y0, x1, y1), "
+        "layer, tint, "
+        "replace, strength, min_slope_rad, max_slope_rad, min_height_m, max_height_m, noise, noise_size_m, "
+        "seed, "
+        "transitions. One step to undo.");
+    c.def(
         "crater",
         [](Project& p, double x, double y, double radius_m, double depth_m, uint32_t seed, double heat) {
             Json j = {{"cmd", "crater"}, {"x", x}, {"y", y}, {"radius_m", radius_m}, {"seed", seed}};

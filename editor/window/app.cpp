@@ -1,6 +1,7 @@
 #include "editor/window/app.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -25,6 +26,10 @@ struct Titles {
     }
     std::string operator()(const PaintCommand& c) const {
         return c.layer ? fmt::format("Paint {}", *c.layer) : std::string("Tint");
+    }
+    std::string operator()(const FillCommand& c) const {
+        const std::string with = c.layer.value_or("tint");
+        return c.replace ? fmt::format("Replace {} by {}", *c.replace, with) : fmt::format("Fill {}", with);
     }
     std::string operator()(const CraterCommand& c) const { return fmt::format("Crater {:.1f} m", c.crater.radius_m); }
     std::string operator()(const FootprintsCommand&) const { return "Footprints"; }
@@ -92,14 +97,53 @@ bool App::apply(const Command& command) {
     return true;
 }
 
+void App::start_fill() {
+    if (filling() || tools.stroking()) return;
+    const ToolSettings& s = tools.settings;
+    FillCommand command{.rect = {},
+                        .layer = {},
+                        .tint = {},
+                        .replace = {},
+                        .strength = tools.brush().strength,
+                        .mask = s.mask,
+                        .seed = uint32_t(session.document().next_group() * 977),
+                        .transitions = s.transitions};
+    if (!s.layer.empty()) command.layer = s.layer;
+    if (s.use_tint) command.tint = glm::dvec3(s.tint);
+    if (replaced_layer > 0 && size_t(replaced_layer) <= layer_names.size())
+        command.replace = layer_names[size_t(replaced_layer - 1)];
+    if (const Status checked = check_command({command}); !checked) return fail(checked.message());
+    fill_.emplace(session, std::move(command));
+}
+
+void App::advance_fill() {
+    if (!fill_) return;
+    const auto start = std::chrono::steady_clock::now();
+    constexpr std::chrono::milliseconds kSlice(25);
+    while (!fill_->done() && std::chrono::steady_clock::now() - start < kSlice)
+        if (const auto dirt = fill_->step(); !dirt) fail(dirt.message());
+    scene_changed_ = true;
+    if (!fill_->done()) return;
+    fill_.reset();
+    say("Filled");
+}
+
+void App::cancel_fill() {
+    if (!fill_) return;
+    if (const auto dirt = fill_->cancel(); !dirt) fail(dirt.message());
+    fill_.reset();
+    scene_changed_ = true;
+    say("The fill was taken back");
+}
+
 void App::undo_step() {
-    if (tools.stroking()) return;
+    if (filling() || tools.stroking()) return;
     if (!session.document().can_undo()) return say("Nothing to undo");
     if (apply({.body = UndoCommand{}})) say("Undone");
 }
 
 void App::redo_step() {
-    if (tools.stroking()) return;
+    if (filling() || tools.stroking()) return;
     if (!session.document().can_redo()) return say("Nothing to redo");
     if (apply({.body = RedoCommand{}})) say("Redone");
 }

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "editor/fill.h"
 #include "editor/session.h"
 #include "editor/window/camera_controller.h"
 #include "editor/window/tools.h"
@@ -84,6 +85,13 @@ class App {
     // Undoes or redoes until `sequence` is the newest applied command (0: none).
     void go_to(uint64_t sequence);
     void change_settings(const ProjectSettings& settings);
+    // With the paint tool's layer, tint and masks: `replaced_layer`'s texels (0: all), square by square.
+    void start_fill();
+    void advance_fill();  // a few squares; once a frame
+    void cancel_fill();
+    [[nodiscard]] bool filling() const { return fill_.has_value(); }
+    [[nodiscard]] double filled_share() const { return fill_ ? fill_->share() : 0; }
+    int replaced_layer = 0;
     int transition_from = 0, transition_to = 1; // of the next one to be made; among the layers with textures
     void set_tool(Tool tool);
     void set_layer(int index);
@@ -110,7 +118,9 @@ class App {
     [[nodiscard]] const std::vector<ToolController::Outline>& outlines() const { return outlines_; }
     [[nodiscard]] bool flying() const { return drag_ == CameraInput::Drag::look; }
     // A frame must follow at once: something moves by itself or is being held down.
-    [[nodiscard]] bool busy() const { return tools.stroking() || camera.moving() || drag_ != CameraInput::Drag::none; }
+    [[nodiscard]] bool busy() const {
+        return filling() || tools.stroking() || camera.moving() || drag_ != CameraInput::Drag::none;
+    }
 
     // --- messages ---
     void say(std::string message) { message_ = std::move(message); }
@@ -131,6 +141,7 @@ class App {
     CameraInput camera_input(ui::Ui& ui, const ui::ViewportResponse& response, double dt_s);
     void choose_drag(ui::Ui& ui, const ui::ViewportResponse& response);
 
+    std::optional<Fill> fill_;
     std::string message_;
     std::vector<std::string> errors_;
     std::vector<HistoryStep> history_;

@@ -85,6 +85,21 @@ void add_layer_dialog(App& app, ui::Ui& ui) {
                 .layer = {.pack = {.folder = app.path_text}, .name = app.new_layer_name, .tile_m = app.new_layer_tile_m}};
 }
 
+// While a fill goes on nothing else is edited: it is one step of the history. Closing the dialog takes it
+// back.
+void fill_dialog(App& app, ui::Ui& ui) {
+    if (!ui::dialog_open(ui, kFillDialog)) {
+        app.cancel_fill();
+        return;
+    }
+    if (!app.filling()) return ui::close_dialog(ui, kFillDialog);
+    auto dialog = ui::dialog(ui, kFillDialog, 360);
+    if (!dialog) return;
+    ui::label(ui, fmt::format("{:.0f} %", 100 * app.filled_share()));
+    ui.space(8);
+    ui::dialog_buttons(ui, {"Cancel"});
+}
+
 } // namespace
 
 void build_dialogs(App& app, ui::Ui& ui) {
@@ -93,6 +108,7 @@ void build_dialogs(App& app, ui::Ui& ui) {
     record_dialog(app, ui);
     export_dialog(app, ui);
     add_layer_dialog(app, ui);
+    fill_dialog(app, ui);
     for (const std::string& text : app.take_errors()) ui.toast(text, ui.theme.error, 8);
 }
 

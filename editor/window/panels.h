@@ -5,6 +5,8 @@
 
 namespace loam::window {
 
+inline constexpr std::string_view kFillDialog = "Filling the map";
+
 void build_menus(App& app, ui::Ui& ui);
 void build_tool_bar(App& app, ui::Ui& ui);
 void build_properties(App& app, ui::Ui& ui); // the right panel: tool, layers, sun, history

@@ -22,11 +22,31 @@ void brush_properties(ui::Ui& ui, Brush& brush, bool with_strength) {
         brush.hardness = percent / 100;
 }
 
-void slope_limits(ui::Ui& ui, ToolSettings& settings) {
-    double low = settings.min_slope_rad * kDegrees, high = settings.max_slope_rad * kDegrees;
+void mask_properties(ui::Ui& ui, GroundMask& mask) {
+    double low = mask.min_slope_rad * kDegrees, high = mask.max_slope_rad * kDegrees;
     const ui::SliderDesc desc{.min = 0, .max = 90, .decimals = 0, .unit = "°"};
-    if (ui::slider(ui, "Slope from", low, desc)) settings.min_slope_rad = std::min(low, high) / kDegrees;
-    if (ui::slider(ui, "Slope to", high, desc)) settings.max_slope_rad = std::max(low, high) / kDegrees;
+    if (ui::slider(ui, "Slope from", low, desc)) mask.min_slope_rad = std::min(low, high) / kDegrees;
+    if (ui::slider(ui, "Slope to", high, desc)) mask.max_slope_rad = std::max(low, high) / kDegrees;
+    const ui::SliderDesc metres{.min = -GroundMask::kHighest_m,
+                                .max = GroundMask::kHighest_m,
+                                .decimals = 0,
+                                .unit = "m",
+                                .tooltip = "Type a number; the ends are no limit"};
+    double lowest = mask.min_height_m, highest = mask.max_height_m;
+    if (ui::slider(ui, "Height from", lowest, metres)) mask.min_height_m = std::min(lowest, highest);
+    if (ui::slider(ui, "Height to", highest, metres)) mask.max_height_m = std::max(lowest, highest);
+    double percent = mask.noise * 100;
+    if (ui::slider(ui, "Noise", percent,
+                   {.min = 0,
+                    .max = 100,
+                    .decimals = 0,
+                    .unit = "%",
+                    .tooltip = "Leaves patches of the ground out"}))
+        mask.noise = percent / 100;
+    ui.push_disabled(mask.noise <= 0);
+    ui::slider(ui, "Noise size", mask.noise_size_m,
+               {.min = 0.5, .max = 5000, .decimals = 1, .unit = "m", .logarithmic = true});
+    ui.pop_disabled();
 }
 
 void tint_properties(ui::Ui& ui, ToolSettings& settings) {
@@ -90,6 +110,20 @@ void road_properties(ui::Ui& ui, App& app) {
     tint_properties(ui, app.tools.settings);
 }
 
+// The whole map, or all of one layer, under the paint tool's masks.
+void fill_properties(ui::Ui& ui, App& app) {
+    std::vector<std::string_view> names{"every layer"};
+    names.insert(names.end(), app.layer_names.begin(), app.layer_names.end());
+    app.replaced_layer = std::clamp(app.replaced_layer, 0, int(names.size()) - 1);
+    ui::combo(ui, "Replace", app.replaced_layer, names);
+    ui.push_disabled(app.filling() || (app.tools.settings.layer.empty() && !app.tools.settings.use_tint));
+    if (ui::button(ui, "Fill the map")) {
+        app.start_fill();
+        if (app.filling()) ui::open_dialog(ui, kFillDialog);
+    }
+    ui.pop_disabled();
+}
+
 void tool_properties(App& app, ui::Ui& ui) {
     ToolSettings& settings = app.tools.settings;
     ui.push_id(tool_name(app.tools.tool));
@@ -109,9 +143,10 @@ void tool_properties(App& app, ui::Ui& ui) {
             break;
         case Tool::paint:
             brush_properties(ui, app.tools.brush(), true);
-            slope_limits(ui, settings);
+            mask_properties(ui, settings.mask);
             tint_properties(ui, settings);
             ui::checkbox(ui, "Transitions", settings.transitions);
+            fill_properties(ui, app);
             break;
         case Tool::crater: crater_properties(ui, app); break;
         case Tool::footprints: gait_properties(ui, settings.gait); break;

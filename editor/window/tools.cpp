@@ -119,8 +119,7 @@ std::optional<Command> ToolController::paint(const ToolInput& input) {
     command.radius_m = brush().radius_m;
     command.strength = brush().strength;
     command.hardness = brush().hardness;
-    command.min_slope_rad = settings.min_slope_rad;
-    command.max_slope_rad = settings.max_slope_rad;
+    command.mask = settings.mask;
     command.transitions = settings.transitions;
     command.seed = uint32_t(group_ * 977) + command_count_; // other texels at each pass, so that strength builds up
     return Command{.body = std::move(command), .group = group_};

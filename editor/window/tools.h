@@ -51,7 +51,7 @@ struct ToolSettings {
     bool use_tint = false;
     bool transitions = false;              // painting places them where layers meet
     glm::vec3 tint{1, 1, 1};               // sRGB-encoded
-    double min_slope_rad = 0, max_slope_rad = 1.5707963267948966;
+    GroundMask mask;                       // of painting and filling
     double crater_depth_share = 0.4;       // of the radius
     double crater_heat = 0;                // seen on maps with the thermal or the emissive channel
     uint32_t seed = 1;

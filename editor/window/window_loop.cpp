@@ -106,6 +106,7 @@ Status WindowLoop::iterate() {
     const bool was_busy = app_.busy();
     const ui::FrameOutput& out = build(now, was_busy ? dt : 0, events);
     app_.handle_keys(out.keys, ui_);
+    app_.advance_fill();
     platform_.set_cursor(out.cursor);
     report_.viewport(viewport_, size.x, size.y);
     report_.message(app_.message());

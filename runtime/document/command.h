@@ -5,8 +5,16 @@
 //       modes: raise, lower (strength_m a dab), smooth, flatten (strength 0…1; flatten has "target_m");
 //       either name of the strength is read in any mode
 //   {"cmd":"paint","dabs":[[x,y],…],"radius_m":5,"layer":"rock","strength":1,"hardness":0.5,"seed":1,
-//    "min_slope_rad":0,"max_slope_rad":1.5708,"tint":[r,g,b],"transitions":false}   ("layer" or "tint" or both)
-//       transitions: the project's transitions are placed where layers meet, under the dabs and beside them (transitions.h)
+//    "tint":[r,g,b],"transitions":false, MASK}   ("layer" or "tint" or both)
+//       transitions: the project's transitions are placed where layers meet, under the dabs and beside them
+//       (transitions.h) MASK:
+//       "min_slope_rad":0,"max_slope_rad":1.5708,"min_height_m":…,"max_height_m":…,"noise":0,
+//       "noise_size_m":8; it looks at the base map's ground, and noise (0 … 1) leaves patches of about that
+//       size out
+//   {"cmd":"fill","rect":[x0,y0,x1,y1],"layer":"rock","tint":[r,g,b],"replace":"grass","strength":1,"seed":1,
+//    "transitions":false, MASK}   the same over a rectangle (without one: the map); only texels of "replace",
+//    if
+//       that is given. At most 33 million texels: a session cuts larger ones into a group (editor/fill.h)
 //   {"cmd":"crater","x":…,"y":…,"radius_m":10,"depth_m":4,"seed":7,"heat":0.8}
 //   {"cmd":"footprints","prints":[{"x":…,"y":…,"heading_rad":…,"foot":0},…],"length_m":0.3,"depth_m":0.03,"seed":1}
 //       a print may have its own length_m, depth_m and seed; else print i has seed + i
@@ -26,9 +34,9 @@
 //   its id
 //   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}
 //   {"cmd":"undo"}    {"cmd":"redo"}
-// Required: mode and dabs; target_m to flatten; layer or tint; x and y; prints; points; at; id, enabled and
-// order. The rest have the defaults below. Any command may carry "group": n. Consecutive commands of one
-// group undo together.
+// Required: mode and dabs; target_m to flatten; layer or tint; x and y (of a fill no dabs); prints; points;
+// at; id, enabled and order. The rest have the defaults below. Any command may carry "group": n. Consecutive
+// commands of one group undo together.
 #pragma once
 
 #include <optional>
@@ -56,6 +64,17 @@ struct SculptCommand {
     double target_m = 0;    // flatten
 };
 
+// Where the ground lets paint stick, and how much of it.
+struct GroundMask {
+    double min_slope_rad = 0, max_slope_rad = 1.5707963267948966;
+    double min_height_m = -kHighest_m, max_height_m = kHighest_m;
+    double noise = 0;         // 0: all of the place; 1: only in patches
+    double noise_size_m = 8;  // of the patches, 0.5 … 5000
+
+    static constexpr double kHighest_m = 16'384;
+    bool operator==(const GroundMask&) const = default;
+};
+
 struct PaintCommand {
     std::vector<glm::dvec2> dabs;
     double radius_m = 5;
@@ -63,7 +82,19 @@ struct PaintCommand {
     std::optional<glm::dvec3> tint;  // sRGB-encoded 0…1
     double strength = 1;             // share of texels (layer, dithered by position and seed) or of the tint
     double hardness = 0.5;
-    double min_slope_rad = 0, max_slope_rad = 1.5707963267948966;
+    GroundMask mask;
+    uint32_t seed = 0;
+    bool transitions = false;
+};
+
+// Texels from a rectangle's lower edges up to, but not at, its upper ones, so that adjoining fills meet once.
+struct FillCommand {
+    std::optional<WorldRect> rect;  // none: the map
+    std::optional<std::string> layer;
+    std::optional<glm::dvec3> tint;      // as PaintCommand's
+    std::optional<std::string> replace;  // only texels of this layer
+    double strength = 1;
+    GroundMask mask;
     uint32_t seed = 0;
     bool transitions = false;
 };
@@ -94,7 +125,7 @@ struct RemoveOperatorCommand {
 struct UndoCommand {};
 struct RedoCommand {};
 
-using CommandBody = std::variant<SculptCommand, PaintCommand, CraterCommand, FootprintsCommand,
+using CommandBody = std::variant<SculptCommand, PaintCommand, FillCommand, CraterCommand, FootprintsCommand,
                                  AddOperatorCommand, EditOperatorCommand, ReorderCommand, SetOperatorCommand,
                                  RemoveOperatorCommand, UndoCommand, RedoCommand>;
 

@@ -47,17 +47,42 @@ Status check(const SculptCommand& c) {
     return in_range("strength", c.strength, 0, 1);
 }
 
+Status check(const GroundMask& mask) {
+    LOAM_TRY(in_range("min_slope_rad", mask.min_slope_rad, 0, kRightAngle_rad + 1e-4));
+    LOAM_TRY(in_range("max_slope_rad", mask.max_slope_rad, 0, kRightAngle_rad + 1e-4));
+    constexpr double kHighest_m = GroundMask::kHighest_m;
+    LOAM_TRY(in_range("min_height_m", mask.min_height_m, -kHighest_m, kHighest_m));
+    LOAM_TRY(in_range("max_height_m", mask.max_height_m, -kHighest_m, kHighest_m));
+    LOAM_TRY(in_range("noise", mask.noise, 0, 1));
+    return in_range("noise_size_m", mask.noise_size_m, 0.5, 5000);
+}
+
+Status tint_ok(const std::optional<glm::dvec3>& tint) {
+    for (int channel = 0; tint && channel < 3; ++channel) LOAM_TRY(in_range("tint", (*tint)[channel], 0, 1));
+    return {};
+}
+
+Status check(const FillCommand& c) {
+    if (!c.layer && !c.tint) return error("fill needs a layer or a tint");
+    if (c.rect) {
+        const WorldRect& r = *c.rect;
+        if (!std::isfinite(r.min_x) || !std::isfinite(r.min_y) || !std::isfinite(r.max_x) ||
+            !std::isfinite(r.max_y) || r.min_x >= r.max_x || r.min_y >= r.max_y)
+            return error("fill: \"rect\" must be [x0, y0, x1, y1] with x0 < x1 and y0 < y1");
+    }
+    LOAM_TRY(in_range("strength", c.strength, 0, 1));
+    LOAM_TRY(check(c.mask));
+    return tint_ok(c.tint);
+}
+
 Status check(const PaintCommand& c) {
     LOAM_TRY(dabs_ok(c.dabs));
     if (!c.layer && !c.tint) return error("paint needs a layer or a tint");
     LOAM_TRY(in_range("radius_m", c.radius_m, 0.01, 5000));
     LOAM_TRY(in_range("strength", c.strength, 0, 1));
     LOAM_TRY(in_range("hardness", c.hardness, 0, 1));
-    LOAM_TRY(in_range("min_slope_rad", c.min_slope_rad, 0, kRightAngle_rad + 1e-4));
-    LOAM_TRY(in_range("max_slope_rad", c.max_slope_rad, 0, kRightAngle_rad + 1e-4));
-    if (c.tint)
-        for (int channel = 0; channel < 3; ++channel) LOAM_TRY(in_range("tint", (*c.tint)[channel], 0, 1));
-    return {};
+    LOAM_TRY(check(c.mask));
+    return tint_ok(c.tint);
 }
 
 Status check(const Crater& c) {

@@ -250,6 +250,10 @@ int Document::height_mip_count() const {
 int Document::index_mip_count() const {
     return impl_->index.mip_count;
 }
+TexelRect Document::fill_texels(const FillCommand& command) const {
+    return loam::fill_texels(command, impl_->index);
+}
+
 glm::ivec2 Document::index_size_texels() const {
     return {impl_->index.samples_x, impl_->index.samples_y};
 }

@@ -89,6 +89,7 @@ class Document {
     // Of mip 0. Texel (i, j) stands at world (i, j) * index_spacing_m, as height samples do; the last ones at
     // or beyond bounds().
     [[nodiscard]] glm::ivec2 index_size_texels() const;
+    [[nodiscard]] TexelRect fill_texels(const FillCommand& command) const;  // that it looks at
     // Enabled operators whose bounds in the map overlap, in order of evaluation. Valid while the ReadLock is
     // held.
     void operators_over_height(const WorldRect& rect, std::vector<const Operator*>& out) const;

@@ -62,17 +62,26 @@ Status Document::Impl::compute(const SculptCommand& command, Change& change) {
     return {};
 }
 
-Status Document::Impl::compute(const PaintCommand& command, Change& change) {
-    int layer = 0;
+Result<uint16_t> Document::Impl::layer_number(const std::string& name) const {
+    LOAM_TRY(known_layer(name));
+    uint16_t layer = 0;
+    while (settings.layers[layer].name != name) ++layer;
+    return layer;
+}
+
+// Both commands that paint: `run` does it.
+template <typename PaintingCommand, typename Run>
+Status Document::Impl::compute_paint(const PaintingCommand& command, PaintLayers layers, Change& change,
+                                     Run&& run) {
     if (command.layer) {
-        LOAM_TRY(known_layer(*command.layer));
-        while (settings.layers[size_t(layer)].name != *command.layer) ++layer;
+        const auto number = layer_number(*command.layer);
+        if (!number.ok()) return number.error();
+        layers.layer = *number;
     }
+    if (command.transitions) layers.transitions = transitions_of(settings);
     change.texels.emplace(*pages, index, default_texel(settings));
-    SlopeReader slopes(*pages, height, settings.default_height_mm);
-    LOAM_TRY(paint(command, uint16_t(layer),
-                   command.transitions ? transitions_of(settings) : std::vector<Transition>(), slopes,
-                   *change.texels));
+    SlopeReader ground(*pages, height, settings.default_height_mm);
+    LOAM_TRY(run(command, layers, ground, *change.texels));
     std::vector<TexelRect> changed;
     auto result = change.texels->finish(changed);
     if (!result.ok()) return result.error();
@@ -80,6 +89,20 @@ Status Document::Impl::compute(const PaintCommand& command, Change& change) {
     add_page_images(change.index_changes, change.images);
     change.dirt.index = dirt_of_samples(index, changed, 1);  // nearest or bilinear: one texel on either side
     return {};
+}
+
+Status Document::Impl::compute(const PaintCommand& command, Change& change) {
+    return compute_paint(command, {}, change, paint);
+}
+
+Status Document::Impl::compute(const FillCommand& command, Change& change) {
+    PaintLayers layers;
+    if (command.replace) {
+        const auto number = layer_number(*command.replace);
+        if (!number.ok()) return number.error();
+        layers.replace = *number;
+    }
+    return compute_paint(command, std::move(layers), change, fill);
 }
 
 // `op`: its new state, or none to remove it.
@@ -307,6 +330,8 @@ Result<Dirt> Document::apply(const Command& command) {
     Impl::Change change;
     change.next_operator = impl_->next_operator;
     LOAM_TRY(std::visit([&](const auto& body) { return impl_->compute(body, change); }, command.body));
+    // A part of a large fill may find nothing to do: that is no step to undo.
+    if (std::holds_alternative<FillCommand>(command.body) && change.images.empty()) return Dirt{};
     merge_dirt(change.dirt, kMaxOperatorRects);
     auto dirt = impl_->commit_change(change, command);
     impl_->tidy_log();

@@ -18,6 +18,7 @@
 #include "runtime/document/journal_images.h"
 #include "runtime/document/operator_set.h"
 #include "runtime/document/page_edits.h"
+#include "runtime/document/paint.h"
 #include "runtime/store/page_store.h"
 #include "runtime/store/writer_lock.h"
 
@@ -78,6 +79,10 @@ struct Document::Impl {
     };
     Status compute(const SculptCommand& command, Change& change);
     Status compute(const PaintCommand& command, Change& change);
+    Status compute(const FillCommand& command, Change& change);
+    template <typename PaintingCommand, typename Run>
+    Status compute_paint(const PaintingCommand& command, PaintLayers layers, Change& change, Run&& run);
+    [[nodiscard]] Result<uint16_t> layer_number(const std::string& name) const;
     Status compute(const CraterCommand& command, Change& change);
     Status compute(const FootprintsCommand& command, Change& change);
     Status compute(const AddOperatorCommand& command, Change& change);

@@ -49,22 +49,46 @@ SculptCommand read_sculpt(Fields& fields) {
     return c;
 }
 
-PaintCommand read_paint(Fields& fields) {
-    PaintCommand c;
-    c.dabs = read_dabs(fields);
-    c.radius_m = fields.number("radius_m", c.radius_m);
+// What paint and fill share.
+template <typename PaintingCommand>
+void read_painting(std::string_view command, Fields& fields, PaintingCommand& c) {
     if (const Json* layer = fields.find("layer")) c.layer = fields.text_of(*layer, "layer");
     if (const Json* tint = fields.find("tint")) {
-        if (!tint->is_array() || tint->size() != 3) refuse("paint: \"tint\" must be [red, green, blue]");
+        if (!tint->is_array() || tint->size() != 3)
+            refuse("{}: \"tint\" must be [red, green, blue]", command);
         c.tint = glm::dvec3(fields.number_of((*tint)[0], "tint"), fields.number_of((*tint)[1], "tint"),
                             fields.number_of((*tint)[2], "tint"));
     }
     c.strength = fields.number("strength", c.strength);
-    c.hardness = fields.number("hardness", c.hardness);
-    c.min_slope_rad = fields.number("min_slope_rad", c.min_slope_rad);
-    c.max_slope_rad = fields.number("max_slope_rad", c.max_slope_rad);
+    GroundMask& m = c.mask;
+    m.min_slope_rad = fields.number("min_slope_rad", m.min_slope_rad);
+    m.max_slope_rad = fields.number("max_slope_rad", m.max_slope_rad);
+    m.min_height_m = fields.number("min_height_m", m.min_height_m);
+    m.max_height_m = fields.number("max_height_m", m.max_height_m);
+    m.noise = fields.number("noise", m.noise);
+    m.noise_size_m = fields.number("noise_size_m", m.noise_size_m);
     c.seed = uint32_t(fields.whole("seed", kMaxU32, 0));
     c.transitions = fields.truth("transitions", c.transitions);
+}
+
+PaintCommand read_paint(Fields& fields) {
+    PaintCommand c;
+    c.dabs = read_dabs(fields);
+    c.radius_m = fields.number("radius_m", c.radius_m);
+    c.hardness = fields.number("hardness", c.hardness);
+    read_painting("paint", fields, c);
+    return c;
+}
+
+FillCommand read_fill(Fields& fields) {
+    FillCommand c;
+    if (const Json* rect = fields.find("rect")) {
+        if (!rect->is_array() || rect->size() != 4) refuse("fill: \"rect\" must be [x0, y0, x1, y1]");
+        const auto at = [&](size_t i) { return fields.number_of((*rect)[i], "rect"); };
+        c.rect = WorldRect{at(0), at(1), at(2), at(3)};
+    }
+    if (const Json* replace = fields.find("replace")) c.replace = fields.text_of(*replace, "replace");
+    read_painting("fill", fields, c);
     return c;
 }
 
@@ -134,18 +158,36 @@ void write(Json& json, const SculptCommand& c) {
     if (c.mode == SculptMode::flatten) json["target_m"] = c.target_m;
 }
 
+template <typename PaintingCommand>
+void write_painting(Json& json, const PaintingCommand& c) {
+    if (c.layer) json["layer"] = *c.layer;
+    if (c.tint) json["tint"] = {c.tint->x, c.tint->y, c.tint->z};
+    json["strength"] = c.strength;
+    const GroundMask& m = c.mask;
+    json["min_slope_rad"] = m.min_slope_rad;
+    json["max_slope_rad"] = m.max_slope_rad;
+    const GroundMask any;
+    if (m.min_height_m != any.min_height_m) json["min_height_m"] = m.min_height_m;
+    if (m.max_height_m != any.max_height_m) json["max_height_m"] = m.max_height_m;
+    if (m.noise != any.noise) json["noise"] = m.noise;
+    if (m.noise_size_m != any.noise_size_m) json["noise_size_m"] = m.noise_size_m;
+    json["seed"] = c.seed;
+    if (c.transitions) json["transitions"] = true;
+}
+
 void write(Json& json, const PaintCommand& c) {
     json["cmd"] = "paint";
     json["dabs"] = dabs_json(c.dabs);
     json["radius_m"] = c.radius_m;
-    if (c.layer) json["layer"] = *c.layer;
-    if (c.tint) json["tint"] = {c.tint->x, c.tint->y, c.tint->z};
-    json["strength"] = c.strength;
     json["hardness"] = c.hardness;
-    json["min_slope_rad"] = c.min_slope_rad;
-    json["max_slope_rad"] = c.max_slope_rad;
-    json["seed"] = c.seed;
-    if (c.transitions) json["transitions"] = true;
+    write_painting(json, c);
+}
+
+void write(Json& json, const FillCommand& c) {
+    json["cmd"] = "fill";
+    if (c.rect) json["rect"] = {c.rect->min_x, c.rect->min_y, c.rect->max_x, c.rect->max_y};
+    if (c.replace) json["replace"] = *c.replace;
+    write_painting(json, c);
 }
 
 void write(Json& json, const CraterCommand& c) {
@@ -240,6 +282,7 @@ void write(Json& json, const ReorderCommand& c) {
 CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "sculpt") return read_sculpt(fields);
     if (name == "paint") return read_paint(fields);
+    if (name == "fill") return read_fill(fields);
     if (name == "crater") return CraterCommand{read_crater(fields)};
     if (name == "footprints") return read_footprints(fields);
     if (name == "decal" || name == "spline" || name == "volume")
@@ -262,7 +305,8 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "undo") return UndoCommand{};
     if (name == "redo") return RedoCommand{};
     refuse(
-        "unknown command \"{}\" (known: sculpt, paint, crater, footprints, decal, spline, volume, edit, "
+        "unknown command \"{}\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
+        "edit, "
         "reorder, "
         "operator, remove, undo, redo)",
         name);

@@ -1,4 +1,4 @@
-// The painting brush: sets the layer of some texels under each dab and blends their tint.
+// Painting: sets the layer of some texels under each dab, or of a rectangle, and blends their tint.
 #pragma once
 
 #include "runtime/base/result.h"
@@ -9,8 +9,17 @@
 
 namespace loam {
 
-// `layer`: the index of command.layer, where it is given. `transitions`: what is placed where layers meet, if any.
-Status paint(const PaintCommand& command, uint16_t layer, const std::vector<Transition>& transitions,
-             SlopeReader& slopes, PageEdits<IndexTexel>& edits);
+// A command's names as indices.
+struct PaintLayers {
+    std::optional<uint16_t> layer, replace;
+    std::vector<Transition> transitions;  // placed where layers meet, if any
+};
+
+Status paint(const PaintCommand& command, const PaintLayers& layers, SlopeReader& ground,
+             PageEdits<IndexTexel>& edits);
+// The texels that a fill looks at.
+[[nodiscard]] TexelRect fill_texels(const FillCommand& command, const MapShape& shape);
+Status fill(const FillCommand& command, const PaintLayers& layers, SlopeReader& ground,
+            PageEdits<IndexTexel>& edits);
 
 }  // namespace loam

@@ -7,7 +7,7 @@
 
 namespace loam {
 
-Result<double> SlopeReader::height_m(int x, int y) {
+Result<double> SlopeReader::sample_m(int x, int y) {
     const int page_x = x / kBasePageSide, page_y = y / kBasePageSide;
     if (page_x != page_x_ || page_y != page_y_) {
         auto page = pages_.load<int32_t>({shape_.map, 0, page_x, page_y});
@@ -20,20 +20,33 @@ Result<double> SlopeReader::height_m(int x, int y) {
                                   : fallback_mm_);
 }
 
-Result<double> SlopeReader::tangent_squared(double x_m, double y_m) {
+Result<SlopeReader::Patch> SlopeReader::patch(double x_m, double y_m) {
     const double x = std::clamp(x_m / shape_.spacing_m, 0.0, double(shape_.samples_x - 1));
     const double y = std::clamp(y_m / shape_.spacing_m, 0.0, double(shape_.samples_y - 1));
     const int i = std::min(int(x), shape_.samples_x - 2), j = std::min(int(y), shape_.samples_y - 2);
-    const double u = x - i, v = y - j;
-    double corner[4];
+    Patch patch{.corner_m = {}, .u = x - i, .v = y - j};
     for (int k = 0; k < 4; ++k) {
-        const auto height = height_m(i + k % 2, j + k / 2);
+        const auto height = sample_m(i + k % 2, j + k / 2);
         if (!height.ok()) return height.error();
-        corner[k] = *height;
+        patch.corner_m[k] = *height;
     }
-    const double east = ((corner[1] - corner[0]) * (1 - v) + (corner[3] - corner[2]) * v) / shape_.spacing_m;
-    const double north = ((corner[2] - corner[0]) * (1 - u) + (corner[3] - corner[1]) * u) / shape_.spacing_m;
+    return patch;
+}
+
+Result<double> SlopeReader::tangent_squared(double x_m, double y_m) {
+    const auto p = patch(x_m, y_m);
+    if (!p.ok()) return p.error();
+    const double* c = p->corner_m;
+    const double east = ((c[1] - c[0]) * (1 - p->v) + (c[3] - c[2]) * p->v) / shape_.spacing_m;
+    const double north = ((c[2] - c[0]) * (1 - p->u) + (c[3] - c[1]) * p->u) / shape_.spacing_m;
     return east * east + north * north;
+}
+
+Result<double> SlopeReader::height_m(double x_m, double y_m) {
+    const auto p = patch(x_m, y_m);
+    if (!p.ok()) return p.error();
+    return std::lerp(std::lerp(p->corner_m[0], p->corner_m[1], p->u),
+                     std::lerp(p->corner_m[2], p->corner_m[3], p->u), p->v);
 }
 
 }  // namespace loam

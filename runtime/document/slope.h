@@ -1,4 +1,4 @@
-// The slope of the base height map at any place, from the bilinear patch around it.
+// Height and slope of the base height map at any place, from the bilinear patch around it.
 #pragma once
 
 #include "runtime/base/result.h"
@@ -12,9 +12,14 @@ class SlopeReader {
         : pages_(pages), shape_(shape), fallback_mm_(fallback_mm) {}
     // Tangent of the steepest angle at a place in metres, squared.
     Result<double> tangent_squared(double x_m, double y_m);
+    Result<double> height_m(double x_m, double y_m);
 
   private:
-    Result<double> height_m(int x, int y);
+    struct Patch {
+        double corner_m[4], u, v;
+    };
+    Result<Patch> patch(double x_m, double y_m);
+    Result<double> sample_m(int x, int y);
 
     BasePages& pages_;
     const MapShape shape_;

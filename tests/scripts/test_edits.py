@@ -132,6 +132,30 @@ def test_a_read_only_project_refuses_edits(plain):
             p.crater(10, 10)
 
 
+def test_a_large_fill_is_one_step_and_is_taken_back(tmp_path):
+    folder = tmp_path / "large"
+    assert run_loam("new", folder, "--recipe", "plain", "--size", "2200", "--layer-size", "64").returncode == 0
+    with loam.open(str(folder)) as p:
+        names = [layer["name"] for layer in p.stats()["settings"]["layers"]]
+        first, second, third = names[:3]
+        p.fill(layer=first)
+        p.paint([[1100, 1100]], second, radius_m=900, hardness=1.0)
+        dirt = p.fill(layer=third, replace=second)
+        assert dirt["index"]
+        places = [(1100, 1100), (300, 1100), (1900, 1100), (1100, 1999), (20, 20), (2190, 2190)]
+        expected = [third, third, third, third, first, first]
+        shown = lambda: [names[int(p.layer(x, y))] for x, y in places]
+        assert shown() == expected
+        p.undo()
+        assert shown() == [second if e == third else e for e in expected]
+        p.redo()
+        assert shown() == expected
+        assert p.count_stale_pages() == 0
+        with pytest.raises(loam.Error, match="unknown layer"):
+            p.fill(layer=first, replace="lava")
+        assert shown() == expected
+
+
 def test_settings_of_the_ground_are_set_and_refused(plain):
     done = run_loam("set", plain, "ground.tile_hiding", "true")
     assert done.returncode == 0, done.stderr

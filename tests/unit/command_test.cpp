@@ -34,6 +34,9 @@ TEST(command, the_examples_of_the_header_parse) {
          R"({"cmd":"sculpt","mode":"flatten","dabs":[[1,2]],"strength":1,"target_m":4})",
          R"({"cmd":"paint","dabs":[[1,2]],"radius_m":5,"layer":"rock","strength":1,"hardness":0.5,"seed":1,
                  "min_slope_rad":0,"max_slope_rad":1.5708,"tint":[0.5,1,0]})",
+         R"({"cmd":"paint","dabs":[[1,2]],"layer":"rock","min_height_m":-4,"max_height_m":900.5,"noise":0.5,"noise_size_m":20})",
+         R"({"cmd":"fill","rect":[0,0,100,50],"layer":"rock","replace":"grass","tint":[1,1,0],"strength":0.5,"seed":3})",
+         R"({"cmd":"fill","layer":"rock","min_slope_rad":0.5})",
          R"({"cmd":"crater","x":1,"y":2,"radius_m":10,"depth_m":4,"seed":7})",
          R"({"cmd":"crater","x":1,"y":2,"radius_m":10,"heat":0.8})",
          R"({"cmd":"footprints","prints":[{"x":1,"y":2,"heading_rad":0.1,"foot":0}],"length_m":0.3,"depth_m":0.03,"seed":1})",
@@ -62,7 +65,8 @@ TEST(command, errors_are_one_sentence) {
         {"{}", "a command: \"cmd\" is missing"},
         {R"({"cmd":5})", "a command: \"cmd\" must be a text, found number"},
         {R"({"cmd":"foo"})",
-         "unknown command \"foo\" (known: sculpt, paint, crater, footprints, decal, spline, volume, edit, "
+         "unknown command \"foo\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
+         "edit, "
          "reorder, "
          "operator, remove, undo, redo)"},
         {R"({"cmd":"undo","x":1})", "undo: unknown key \"x\" (known: cmd, group)"},
@@ -88,6 +92,12 @@ TEST(command, errors_are_one_sentence) {
         {R"({"cmd":"paint","dabs":[],"layer":1})", "paint: \"layer\" must be a text, found number"},
         {R"({"cmd":"paint","dabs":[],"tint":[1,2]})", "paint: \"tint\" must be [red, green, blue]"},
         {R"({"cmd":"paint","dabs":[],"tint":[1,2,0]})", "tint is 2, must be 0 … 1"},
+        {R"({"cmd":"paint","dabs":[],"layer":"a","noise":1.5})", "noise is 1.5, must be 0 … 1"},
+        {R"({"cmd":"fill"})", "fill needs a layer or a tint"},
+        {R"({"cmd":"fill","layer":"a","rect":[0,0,0,5]})",
+         "fill: \"rect\" must be [x0, y0, x1, y1] with x0 < x1 and y0 < y1"},
+        {R"({"cmd":"fill","layer":"a","rect":[0,0,5]})", "fill: \"rect\" must be [x0, y0, x1, y1]"},
+        {R"({"cmd":"fill","layer":"a","dabs":[[1,2]]})", "fill: unknown key \"dabs\""},
         {R"({"cmd":"paint","dabs":[],"layer":"a","seed":-1})",
          "paint: \"seed\" is -1, must be 0 … 4294967295"},
         {R"({"cmd":"paint","dabs":[],"layer":"a","seed":1.5})",

@@ -100,9 +100,24 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
                 paint.tint = glm::dvec3(uniform(0, 1), uniform(0, 1), uniform(0, 1));
             paint.strength = uniform(0, 1);
             paint.hardness = uniform(0, 1);
-            if (whole(0, 1) != 0) paint.max_slope_rad = uniform(0, 1);
+            if (whole(0, 1) != 0) paint.mask.max_slope_rad = uniform(0, 1);
+            if (whole(0, 3) == 0) paint.mask.min_height_m = uniform(0, 20);
+            if (whole(0, 3) == 0) paint.mask = {.noise = uniform(0, 1), .noise_size_m = uniform(0.5, 50)};
             paint.seed = uint32_t(random());
             command.body = paint;
+            if (whole(0, 3) != 0) break;
+            const glm::dvec2 from = place();
+            FillCommand fill{
+                .rect = WorldRect{from.x, from.y, from.x + uniform(1, 80), from.y + uniform(1, 80)},
+                .layer = paint.layer,
+                .tint = paint.tint,
+                .replace = {},
+                .strength = paint.strength,
+                .mask = paint.mask,
+                .seed = paint.seed};
+            if (whole(0, 1) != 0) fill.replace = names[whole(0, 2)];
+            if (whole(0, 3) == 0) fill.rect.reset();
+            command.body = fill;
             break;
         }
         case 6: {

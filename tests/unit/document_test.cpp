@@ -292,6 +292,61 @@ TEST(document, painting_fills_a_solid_disc_and_keeps_to_slopes) {
     expect_mips_are_samples(*document);
 }
 
+// Texel by texel: a rectangle's lower edges belong to it and its upper ones do not; masks look at the ground.
+TEST(document, fills_replace_a_layer_where_the_ground_lets_them) {
+    TemporaryFolder folder;
+    const auto document = create_small(folder.path() / "p");
+    const auto apply = [&](const char* json) {
+        const auto dirt = document->apply(command_of(json));
+        ASSERT_TRUE(dirt.ok()) << dirt.message();
+    };
+    const glm::ivec2 size = document->index_size_texels();
+    const auto at = [&](const std::vector<IndexTexel>& texels, double x_m, double y_m) {
+        return texels[size_t(int(y_m * 2) * size.x + int(x_m * 2))];
+    };
+    apply(R"({"cmd":"paint","dabs":[[100,100]],"radius_m":20,"layer":"dirt","hardness":1})");
+    const auto before = all_texels(*document);
+    apply(R"({"cmd":"fill","rect":[90,90,110,100],"layer":"scree","replace":"dirt","tint":[0,1,1]})");
+    const auto after = all_texels(*document);
+    for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x) {
+            const size_t i = size_t(y * size.x + x);
+            const bool inside = x >= 180 && x < 220 && y >= 180 && y < 200 && before[i].layer == 1;
+            ASSERT_EQ(after[i].layer, inside ? 2 : before[i].layer) << x << ", " << y;
+            ASSERT_EQ(after[i].tint[0], inside ? 0 : 255);
+        }
+    // Adjoining halves meet once: a tint of half strength is the same on both sides and on the line.
+    apply(R"({"cmd":"fill","rect":[200,20,210,30],"tint":[0,0,0],"strength":0.5})");
+    apply(R"({"cmd":"fill","rect":[210,20,220,30],"tint":[0,0,0],"strength":0.5})");
+    const auto halves = all_texels(*document);
+    for (double x = 200; x < 220; x += 0.5) ASSERT_EQ(at(halves, x, 25).tint[0], 128) << x;
+    EXPECT_EQ(at(halves, 220, 25).tint[0], 255);
+    // Heights: only the top of a hill.
+    apply(R"({"cmd":"sculpt","mode":"raise","dabs":[[60,160]],"radius_m":10,"strength_m":20,"hardness":0})");
+    apply(R"({"cmd":"fill","layer":"scree","min_height_m":22})");
+    const auto high = all_texels(*document);
+    EXPECT_EQ(at(high, 60, 160).layer, 2);
+    EXPECT_EQ(at(high, 69, 160).layer, 0) << "12 m and a little";
+    // Noise: patches, neither nothing nor all, and what is left out is as it was.
+    apply(R"({"cmd":"fill","layer":"dirt","noise":1,"noise_size_m":6,"seed":5})");
+    size_t taken = 0, changed_tint = 0;
+    const auto patches = all_texels(*document);
+    for (size_t i = 0; i < patches.size(); ++i) {
+        taken += patches[i].layer == 1 && high[i].layer != 1;
+        changed_tint += patches[i].tint[0] != high[i].tint[0];
+    }
+    EXPECT_GT(double(taken), 0.2 * double(patches.size()));
+    EXPECT_LT(double(taken), 0.8 * double(patches.size()));
+    EXPECT_EQ(changed_tint, 0u);
+    expect_mips_are_samples(*document);
+    // A fill that finds nothing is no step; undoing all of them brings the first map back.
+    const uint64_t revision = document->revision();
+    apply(R"({"cmd":"fill","rect":[-500,-500,-10,-10],"layer":"dirt"})");
+    EXPECT_EQ(document->revision(), revision);
+    for (int i = 0; i < 6; ++i) ASSERT_TRUE(document->undo().ok());
+    EXPECT_EQ(all_texels(*document), before);
+}
+
 TEST(document, ten_thousand_raises_saturate) {
     TemporaryFolder folder;
     const auto document = create_small(folder.path() / "p");
