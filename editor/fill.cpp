@@ -25,7 +25,8 @@ Result<Dirt> Fill::step() {
                             std::min(x0 + kSquareTexels, texels_.x1) * spacing_m_,
                             std::min(y0 + kSquareTexels, texels_.y1) * spacing_m_};
     const uint64_t before = session_.document().revision();
-    auto dirt = session_.apply_one({.body = std::move(square), .group = group_});
+    last_ = {.body = std::move(square), .group = group_};
+    auto dirt = session_.apply_one(last_);
     if (!dirt) {
         if (auto undone = cancel(); !undone) return undone.error();
         return dirt.error();
@@ -38,7 +39,8 @@ Result<Dirt> Fill::step() {
 Result<Dirt> Fill::cancel() {
     next_ = count();
     if (std::exchange(applied_, 0) == 0) return Dirt{};
-    return session_.apply_one({UndoCommand{}});
+    last_ = {UndoCommand{}};
+    return session_.apply_one(last_);
 }
 
 }  // namespace loam

@@ -20,6 +20,7 @@ class Fill {
     // The next square. After an error, or `cancel`, the map is as it was before the first one.
     Result<Dirt> step();
     Result<Dirt> cancel();
+    [[nodiscard]] const Command& last() const { return last_; }  // that step or cancel applied
     [[nodiscard]] bool done() const { return next_ == count(); }
     [[nodiscard]] double share() const { return count() > 0 ? double(next_) / count() : 1; }
 
@@ -31,6 +32,7 @@ class Fill {
 
     Session& session_;
     FillCommand command_;
+    Command last_;
     uint64_t group_ = 0;
     TexelRect texels_;
     double spacing_m_ = 1;

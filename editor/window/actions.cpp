@@ -1,7 +1,7 @@
 // Actions by name and the keys that run them; menus and tooltips show the same keys.
 #include <filesystem>
 
-#include "editor/window/app.h"
+#include "editor/window/panels.h"
 
 namespace loam::window {
 
@@ -39,6 +39,7 @@ constexpr Bound kBound[] = {
     {"stronger", Key::right_bracket, kShift},
     {"previous layer", Key::comma, {}},
     {"next layer", Key::period, {}},
+    {"fill", Key::f, kCtrl},
     {"undo", Key::z, kCtrl},
     {"redo", Key::y, kCtrl},
     {"redo", Key::z, kCtrlShift},
@@ -96,6 +97,11 @@ void App::run(std::string_view action, ui::Ui& ui) {
         path_text = session.document().folder().parent_path().string();
         new_layer_name.clear();
         return ui::open_dialog(ui, "Add layer");
+    }
+    if (action == "fill") {
+        start_fill();
+        if (filling()) ui::open_dialog(ui, kFillDialog);
+        return;
     }
     if (action == "shortcuts") return ui::open_dialog(ui, "Keyboard and mouse");
     if (action == "quit") {

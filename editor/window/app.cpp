@@ -121,7 +121,10 @@ void App::advance_fill() {
     const auto start = std::chrono::steady_clock::now();
     constexpr std::chrono::milliseconds kSlice(25);
     while (!fill_->done() && std::chrono::steady_clock::now() - start < kSlice)
-        if (const auto dirt = fill_->step(); !dirt) fail(dirt.message());
+        if (const auto dirt = fill_->step(); !dirt)
+            fail(dirt.message());
+        else if (on_command)
+            on_command(fill_->last());
     scene_changed_ = true;
     if (!fill_->done()) return;
     fill_.reset();
@@ -130,7 +133,10 @@ void App::advance_fill() {
 
 void App::cancel_fill() {
     if (!fill_) return;
-    if (const auto dirt = fill_->cancel(); !dirt) fail(dirt.message());
+    if (const auto dirt = fill_->cancel(); !dirt)
+        fail(dirt.message());
+    else if (on_command)
+        on_command(fill_->last());
     fill_.reset();
     scene_changed_ = true;
     say("The fill was taken back");

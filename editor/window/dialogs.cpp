@@ -18,6 +18,7 @@ constexpr std::string_view kHelp[][2] = {
     {"Shift while pressing", "smooth"},
     {", and .", "previous and next layer"},
     {"F, Home", "frame the spot under the cursor, the whole map"},
+    {"Ctrl+F", "fill the map as the paint tool is set"},
     {"Ctrl+Z, Ctrl+Y", "undo, redo"},
     {"Ctrl+L", "add a layer from a folder of maps"},
     {"G, F3", "stay above the ground, direct shading"},

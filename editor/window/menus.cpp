@@ -26,6 +26,8 @@ void file_menu(App& app, ui::Ui& ui) {
 void edit_menu(App& app, ui::Ui& ui) {
     action_item(app, ui, "Undo", "undo", ui::Icon::undo, app.session.document().can_undo());
     action_item(app, ui, "Redo", "redo", ui::Icon::redo, app.session.document().can_redo());
+    ui::menu_separator(ui);
+    action_item(app, ui, "Fill the map", "fill", ui::Icon::paint);
 }
 
 // Of the picture while something moves; at rest it is always whole.

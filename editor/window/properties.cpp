@@ -27,14 +27,19 @@ void mask_properties(ui::Ui& ui, GroundMask& mask) {
     const ui::SliderDesc desc{.min = 0, .max = 90, .decimals = 0, .unit = "°"};
     if (ui::slider(ui, "Slope from", low, desc)) mask.min_slope_rad = std::min(low, high) / kDegrees;
     if (ui::slider(ui, "Slope to", high, desc)) mask.max_slope_rad = std::max(low, high) / kDegrees;
-    const ui::SliderDesc metres{.min = -GroundMask::kHighest_m,
-                                .max = GroundMask::kHighest_m,
+    // The ends of the sliders are no limit.
+    constexpr double kLow_m = -1000, kHigh_m = 9000;
+    const ui::SliderDesc metres{.min = kLow_m,
+                                .max = kHigh_m,
                                 .decimals = 0,
                                 .unit = "m",
-                                .tooltip = "Type a number; the ends are no limit"};
-    double lowest = mask.min_height_m, highest = mask.max_height_m;
-    if (ui::slider(ui, "Height from", lowest, metres)) mask.min_height_m = std::min(lowest, highest);
-    if (ui::slider(ui, "Height to", highest, metres)) mask.max_height_m = std::max(lowest, highest);
+                                .tooltip = "At either end there is no limit"};
+    double lowest = std::max(mask.min_height_m, kLow_m), highest = std::min(mask.max_height_m, kHigh_m);
+    const auto limited = [&](double at_m) {
+        return at_m <= kLow_m ? -GroundMask::kHighest_m : at_m >= kHigh_m ? GroundMask::kHighest_m : at_m;
+    };
+    if (ui::slider(ui, "Height from", lowest, metres)) mask.min_height_m = limited(std::min(lowest, highest));
+    if (ui::slider(ui, "Height to", highest, metres)) mask.max_height_m = limited(std::max(lowest, highest));
     double percent = mask.noise * 100;
     if (ui::slider(ui, "Noise", percent,
                    {.min = 0,
@@ -117,10 +122,7 @@ void fill_properties(ui::Ui& ui, App& app) {
     app.replaced_layer = std::clamp(app.replaced_layer, 0, int(names.size()) - 1);
     ui::combo(ui, "Replace", app.replaced_layer, names);
     ui.push_disabled(app.filling() || (app.tools.settings.layer.empty() && !app.tools.settings.use_tint));
-    if (ui::button(ui, "Fill the map")) {
-        app.start_fill();
-        if (app.filling()) ui::open_dialog(ui, kFillDialog);
-    }
+    if (ui::button(ui, "Fill the map")) app.run("fill", ui);
     ui.pop_disabled();
 }
 

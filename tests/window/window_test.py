@@ -310,3 +310,20 @@ def test_a_layer_added_while_the_window_is_open_is_painted_with(display, project
     assert blue > red + 40 and changed_share(start, painted, (x, y)) > 0.5
     assert [c["layer"] for c in window.commands() if c["cmd"] == "paint"][-1] == "sky"
     closed_cleanly(window, display)
+
+
+def test_the_map_is_filled_and_taken_back(display, project, opened):
+    window = opened()
+    away(display, window)
+    start = display.screenshot()
+    display.key("5", "period", "period", "period", "ctrl+f")
+    away(display, window)
+    filled = display.screenshot()
+    keep("filled.png", filled)
+    spots = [place(window, x, y) for x, y in ((0.3, 0.6), (0.5, 0.8), (0.7, 0.6))]
+    assert all(changed_share(start, filled, spot) > 0.5 for spot in spots)
+    assert {c["cmd"] for c in window.commands()} == {"fill"} and len({c["group"] for c in window.commands()}) == 1
+    display.key("ctrl+z")
+    away(display, window)
+    assert all(changed_share(start, display.screenshot(), spot) < 0.02 for spot in spots)
+    closed_cleanly(window, display)
