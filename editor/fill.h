@@ -15,7 +15,7 @@ class Session;
 
 class Fill {
   public:
-    Fill(Session& session, FillCommand command);
+    Fill(Session& session, FillCommand command, uint64_t group = 0);  // 0: a new one
 
     // The next square. After an error, or `cancel`, the map is as it was before the first one.
     Result<Dirt> step();

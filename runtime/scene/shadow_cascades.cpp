@@ -22,8 +22,9 @@ constexpr double kDepthRange_m = 65536.0;
 // A tap reads at most 1.2 * |(0.4, 1)| + sqrt(2) texels beside its point (lighting.glsl), and a plane rises there by that
 // times the tangent of its angle to the light. Moved along its normal by this times the sine it lies above its own texels.
 constexpr float kNormalBias_texels = 2.75f;
-// Changed ground less wide than this in a cascade waits for more, for rest, or for kCutPatience_frames.
-constexpr double kUrgent_texels = 4;
+// Changed ground less wide than this in a cascade waits for more, for rest, or for kCutPatience_frames: a
+// footprint is shaded by its normals and its dent is less deep than the bias.
+constexpr double kUrgent_texels = 8;
 constexpr size_t kMostParts = 8;  // of a cascade, drawn one by one
 constexpr uint64_t kNoCut = 0;    // no set of patches has it, or one in 2^64
 constexpr double kInfinity = std::numeric_limits<double>::infinity();

@@ -134,12 +134,15 @@ def test_filter(plain, tmp_path):
 
 
 def test_materials(plain):
-    (_, pages), (_, hidden), (_, transitions) = bench("materials", plain)
-    assert [row["layers"] for row in pages] == [1] * 3 + [4] * 5
+    (_, pages), (_, hidden), (_, transitions), (_, steps) = bench("materials", plain)
+    assert [row["layers"] for row in pages] == [1] * 4 + [4] * 6
     cost = {(row["layers"], row["with"]): row for row in pages}
     assert cost[1, "plain"]["layer lookups a texel"] == 1
     assert cost[4, "plain"]["layer lookups a texel"] < cost[4, "tile hiding"]["layer lookups a texel"] <= 4
     assert all(row["a page ms"] > 0 for row in pages)
+    for row in steps:
+        if row["weight"] != row["weight of the next"]:
+            assert row["as it is"] < 0.2 < row["mean of the first mip"]
     for row in hidden:
         assert row["peak, hidden"] < row["peak, plain"] <= 1.2
     for row in transitions:

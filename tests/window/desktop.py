@@ -112,10 +112,12 @@ class Window:
         raise AssertionError(f"no {name} within {timeout} s; last: {self.events[-3:]} {''.join(self.errors)}")
 
     def settle(self, quiet_s=1.5, timeout=90):
-        """Until it is idle and stays so."""
+        """Until it is idle, and stays so, after the last command."""
         end = time.monotonic() + timeout
         while time.monotonic() < end:
-            if not self._take(quiet_s) and any(e["event"] == "idle" for e in self.events[-3:]):
+            if self._take(quiet_s):
+                continue
+            if next((e["event"] for e in reversed(self.events) if e["event"] in ("idle", "command")), "") == "idle":
                 return
         raise AssertionError(f"the window does not come to rest; last: {self.events[-3:]}")
 

@@ -118,6 +118,7 @@ def test_paint_crater_undo_save_close_reopen(display, project, opened, tmp_path)
     cratered = display.screenshot()
     assert changed_share(painted, cratered, spot) > 0.3
     display.key("ctrl+z")
+    window.wait_for("command")
     window.settle()
     undone = display.screenshot()
     assert changed_share(painted, undone, spot) < 0.02
@@ -317,6 +318,7 @@ def test_the_map_is_filled_and_taken_back(display, project, opened):
     away(display, window)
     start = display.screenshot()
     display.key("5", "period", "period", "period", "ctrl+f")
+    window.wait_for("command")
     away(display, window)
     filled = display.screenshot()
     keep("filled.png", filled)
@@ -324,6 +326,9 @@ def test_the_map_is_filled_and_taken_back(display, project, opened):
     assert all(changed_share(start, filled, spot) > 0.5 for spot in spots)
     assert {c["cmd"] for c in window.commands()} == {"fill"} and len({c["group"] for c in window.commands()}) == 1
     display.key("ctrl+z")
+    window.wait_for("command")
     away(display, window)
-    assert all(changed_share(start, display.screenshot(), spot) < 0.02 for spot in spots)
+    undone = display.screenshot()
+    keep("fill_undone.png", undone)
+    assert all(changed_share(start, undone, spot) < 0.02 for spot in spots)
     closed_cleanly(window, display)
