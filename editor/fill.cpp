@@ -7,10 +7,8 @@
 
 namespace loam {
 
-Fill::Fill(Session& session, FillCommand command, uint64_t group)
-    : session_(session),
-      command_(std::move(command)),
-      group_(group != 0 ? group : session.document().next_group()) {
+Fill::Fill(Session& session, FillCommand command)
+    : session_(session), command_(std::move(command)), group_(session.document().next_group()) {
     const Document& document = session.document();
     texels_ = document.fill_texels(command_);
     spacing_m_ = document.settings().index_spacing_m;

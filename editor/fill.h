@@ -1,5 +1,5 @@
-// Fills of any size: squares of the index map, one command each, in one group, so that a large one can be watched,
-// stopped and undone as one.
+// Fills of any size: squares of the index map, one command each, in a group of their own, so that a large one
+// can be watched, stopped and undone as one.
 #pragma once
 
 #include <functional>
@@ -15,7 +15,7 @@ class Session;
 
 class Fill {
   public:
-    Fill(Session& session, FillCommand command, uint64_t group = 0);  // 0: a new one
+    Fill(Session& session, FillCommand command);
 
     // The next square. After an error, or `cancel`, the map is as it was before the first one.
     Result<Dirt> step();

@@ -107,7 +107,7 @@ Result<Dirt> Session::apply(const Command& command) {
     const auto* large = std::get_if<FillCommand>(&command.body);
     if (!large || document_->fill_texels(*large).area() <= kLargestFill) return apply_one(command);
     LOAM_TRY(check_command(command));
-    Fill fill(*this, *large, command.group);
+    Fill fill(*this, *large);
     Dirt all;
     while (!fill.done()) {
         auto dirt = fill.step();

@@ -31,13 +31,8 @@ double layers_met(const IndexTexel* texels) {
 
 Status bench_pages(Stage& stage, PageFormat format, BenchTable& table) {
     const TextureLayout layout = texture_layout(stage.document.bounds());
-    auto textures = page_textures(format, stage.document.settings().channels);
-    if (!textures) return textures.error();
-    auto atlas = make_page_atlas(stage.device, *textures, 2, 2);
-    if (!atlas) return atlas.error();
-    auto composer =
-        Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout, *textures, true);
-    if (!composer) return composer.error();
+    auto maker = stage.page_maker(format, stage.document.settings().channels, 2, 2, true);
+    if (!maker) return maker.error();
     // The plainest and the busiest page of two texels an index texel.
     ComposeJob plainest, busiest;
     double least = 1e9, most = -1;
@@ -63,7 +58,7 @@ Status bench_pages(Stage& stage, PageFormat format, BenchTable& table) {
         double best = 1e9, idle = 1e9, recording = 1e9;
         for (int i = 0; i < kRepeats; ++i) {
             auto ms = stage.timed_frame([&](gpu::Commands& commands) {
-                return (*composer)->cmd_compose(*stage.ring, commands, jobs, *atlas);
+                return maker->composer->cmd_compose(*stage.ring, commands, jobs, maker->atlas);
             });
             if (!ms) return ms.error();
             best = std::min(best, ms->y);

@@ -72,27 +72,22 @@ Result<ComposeJob> job_of(Stage& stage, const TextureLayout& layout, const PageI
     return job;
 }
 
-Result<std::array<Texels, 3>> composed(Stage& stage, const TextureLayout& layout,
-                                       std::vector<ComposeJob>& jobs) {
+Result<std::array<Texels, 3>> composed(Stage& stage, std::vector<ComposeJob>& jobs) {
     for (ComposeJob& job : jobs) {
         LOAM_TRY(stage.make_resident(job.index_page));
         job.index_slot = stage.index->map().slot_of(job.index_page);
     }
-    auto textures = page_textures(PageFormat::rgba8, {});
-    if (!textures) return textures.error();
-    auto atlas = make_page_atlas(stage.device, *textures, static_cast<int>(jobs.size()), 1);
-    if (!atlas) return atlas.error();
-    auto composer = Composer::create(stage.device, stage.document, *stage.index, *stage.layers, layout,
-                                     *textures, true);
-    if (!composer) return composer.error();
+    auto maker = stage.page_maker(PageFormat::rgba8, {}, static_cast<int>(jobs.size()), 1, true);
+    if (!maker) return maker.error();
     std::array<Texels, 3> bytes;
     auto ms = stage.timed_frame([&](gpu::Commands& commands) -> Status {
-        LOAM_TRY((*composer)->cmd_compose(*stage.ring, commands, jobs, *atlas));
+        LOAM_TRY(maker->composer->cmd_compose(*stage.ring, commands, jobs, maker->atlas));
         for (size_t which = 0; which < 3; ++which)
-            stage.ring->read_back(commands, (*atlas)[which], [&bytes, which](std::span<const std::byte> got) {
-                bytes[which].resize(got.size());
-                std::memcpy(bytes[which].data(), got.data(), got.size());
-            });
+            stage.ring->read_back(commands, maker->atlas[which],
+                                  [&bytes, which](std::span<const std::byte> got) {
+                                      bytes[which].resize(got.size());
+                                      std::memcpy(bytes[which].data(), got.data(), got.size());
+                                  });
         return {};
     });
     if (!ms) return ms.error();
@@ -153,7 +148,7 @@ Result<std::vector<EncoderPage>> composed_pages(gpu::Device& device, const std::
     const glm::ivec2 sector(middle / 64.0 - 1.0);
     LOAM_TRY(add("64 m", {{}, layout.default_log2_width, std::max(sector.x, 0), std::max(sector.y, 0)}));
     LOAM_TRY(add("crater", metre_page(crater + glm::dvec2(1.5, 0))));
-    auto bytes = composed(*stage, layout, jobs);
+    auto bytes = composed(*stage, jobs);
     if (!bytes) return bytes.error();
     std::vector<EncoderPage> pages;
     for (size_t i = 0; i < jobs.size(); ++i) {

@@ -94,20 +94,15 @@ Result<PageCost> page_cost(const std::filesystem::path& project, gpu::Device& de
     if (!document) return document.error();
     auto stage = Stage::create(device, **document);
     if (!stage) return stage.error();
-    auto textures = page_textures(PageFormat::rgba8, (*document)->settings().channels);
-    if (!textures) return textures.error();
-    auto atlas = make_page_atlas(device, *textures, 2, 2);
-    if (!atlas) return atlas.error();
-    auto composer = Composer::create(device, **document, *stage->index, *stage->layers,
-                                     texture_layout((*document)->bounds()), *textures, false);
-    if (!composer) return composer.error();
+    auto maker = stage->page_maker(PageFormat::rgba8, (*document)->settings().channels, 2, 2, false);
+    if (!maker) return maker.error();
     auto job = stage->whole_page(kPage);
     if (!job) return job.error();
     const std::vector<ComposeJob> jobs(4, *job);
     double best = 1e9, idle = 1e9;
     for (int i = 0; i < repeats; ++i) {
         auto ms = stage->timed_frame([&](gpu::Commands& commands) {
-            return (*composer)->cmd_compose(*stage->ring, commands, jobs, *atlas);
+            return maker->composer->cmd_compose(*stage->ring, commands, jobs, maker->atlas);
         });
         if (!ms) return ms.error();
         best = std::min(best, ms->y);
@@ -220,14 +215,9 @@ Status add_tile_hiding(const BenchRequest& request, gpu::Device& device, BenchTa
             if (!document) return document.error();
             auto stage = Stage::create(device, **document);
             if (!stage) return stage.error();
-            auto textures = page_textures(PageFormat::rgba8, settings.channels);
-            if (!textures) return textures.error();
-            auto atlas = make_page_atlas(device, *textures, 1, 1);
-            if (!atlas) return atlas.error();
+            auto maker = stage->page_maker(PageFormat::rgba8, settings.channels, 1, 1, false);
+            if (!maker) return maker.error();
             const TextureLayout layout = texture_layout((*document)->bounds());
-            auto composer =
-                Composer::create(device, **document, *stage->index, *stage->layers, layout, *textures, false);
-            if (!composer) return composer.error();
             // About eight tiles wide.
             PageId page{{true, 1, 1}, 0, 0, 0};
             while (layout.page_side_m(page) > 12 * source->layers[layer].tile_m) ++page.depth;
@@ -235,8 +225,8 @@ Status add_tile_hiding(const BenchRequest& request, gpu::Device& device, BenchTa
             if (!job) return job.error();
             std::vector<double> values(size_t(kPageTexels) * kPageTexels);
             auto ms = stage->timed_frame([&](gpu::Commands& commands) -> Status {
-                LOAM_TRY((*composer)->cmd_compose(*stage->ring, commands, {&*job, 1}, *atlas));
-                stage->ring->read_back(commands, (*atlas)[0], [&](std::span<const std::byte> bytes) {
+                LOAM_TRY(maker->composer->cmd_compose(*stage->ring, commands, {&*job, 1}, maker->atlas));
+                stage->ring->read_back(commands, maker->atlas[0], [&](std::span<const std::byte> bytes) {
                     for (size_t i = 0; i < values.size(); ++i)
                         values[i] = double(std::to_integer<int>(bytes[i * 4 + 1]));
                 });

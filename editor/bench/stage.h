@@ -10,6 +10,12 @@
 
 namespace loam::bench {
 
+// A composer and the page textures that it writes.
+struct PageMaker {
+    PageAtlas atlas;
+    std::unique_ptr<Composer> composer;
+};
+
 struct Stage {
     gpu::Device& device;
     Document& document;
@@ -40,6 +46,17 @@ struct Stage {
         const double recorded_ms = now_ms();
         LOAM_TRY(ring->finish(**begun));
         return glm::dvec2(recorded_ms - start_ms, now_ms() - recorded_ms);
+    }
+    Result<PageMaker> page_maker(PageFormat format, std::span<const Channel> channels, int columns, int rows,
+                                 bool decals) {
+        auto textures = page_textures(format, channels);
+        if (!textures) return textures.error();
+        auto atlas = make_page_atlas(device, *textures, columns, rows);
+        if (!atlas) return atlas.error();
+        auto composer = Composer::create(device, document, *index, *layers, texture_layout(document.bounds()),
+                                         *textures, decals);
+        if (!composer) return composer.error();
+        return PageMaker{std::move(*atlas), std::move(*composer)};
     }
     // A page by itself, its inputs resident.
     Result<ComposeJob> whole_page(const PageId& page) {

@@ -27,12 +27,13 @@ struct Composed {
     Texels mip0, mip1;  // of albedo, as stored
 };
 
-Result<Composed> compose(Stage& stage, Composer& composer, PageAtlas& atlas, const ComposeJob& job) {
+Result<Composed> compose(Stage& stage, PageMaker& maker, const ComposeJob& job) {
     Composed out;
     auto ms = stage.timed_frame([&](gpu::Commands& commands) -> Status {
-        LOAM_TRY(composer.cmd_compose(*stage.ring, commands, {&job, 1}, atlas));
-        stage.ring->read_back(commands, atlas[0], [&](auto bytes) { out.mip0 = texels_of(bytes); });
-        stage.ring->read_back(commands, atlas[0], [&](auto bytes) { out.mip1 = texels_of(bytes); }, 1);
+        LOAM_TRY(maker.composer->cmd_compose(*stage.ring, commands, {&job, 1}, maker.atlas));
+        stage.ring->read_back(commands, maker.atlas[0], [&](auto bytes) { out.mip0 = texels_of(bytes); });
+        stage.ring->read_back(
+            commands, maker.atlas[0], [&](auto bytes) { out.mip1 = texels_of(bytes); }, 1);
         return {};
     });
     if (!ms) return ms.error();
@@ -69,25 +70,20 @@ Status add_vista_steps(const BenchRequest& request, gpu::Device& device, BenchTa
     LOAM_TRY((*document)->change_settings(settings));
     auto stage = Stage::create(device, **document);
     if (!stage) return stage.error();
-    auto textures = page_textures(PageFormat::rgba8, settings.channels);
-    if (!textures) return textures.error();
-    auto atlas = make_page_atlas(device, *textures, 1, 1);
-    if (!atlas) return atlas.error();
+    auto maker = stage->page_maker(PageFormat::rgba8, settings.channels, 1, 1, false);
+    if (!maker) return maker.error();
     const TextureLayout layout = texture_layout((*document)->bounds());
-    auto composer =
-        Composer::create(device, **document, *stage->index, *stage->layers, layout, *textures, false);
-    if (!composer) return composer.error();
     const int pages_a_row = kPageTexels;  // the atlas is one page
     for (int depth = 6; depth >= 1; --depth) {
         const PageId page{{true, 1, 1}, depth, (1 << depth) / 2 + 1, (1 << depth) / 2};
         const PageId coarser = *layout.coarser(page);
         auto job = stage->whole_page(page);
         if (!job) return job.error();
-        auto own = compose(*stage, **composer, *atlas, *job);
+        auto own = compose(*stage, *maker, *job);
         if (!own) return own.error();
         auto next_job = stage->whole_page(coarser);
         if (!next_job) return next_job.error();
-        auto next = compose(*stage, **composer, *atlas, *next_job);
+        auto next = compose(*stage, *maker, *next_job);
         if (!next) return next.error();
         Step mean_of_first, as_composed;
         constexpr int kHalf = kPagePayload / 2;

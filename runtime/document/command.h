@@ -7,14 +7,13 @@
 //   {"cmd":"paint","dabs":[[x,y],…],"radius_m":5,"layer":"rock","strength":1,"hardness":0.5,"seed":1,
 //    "tint":[r,g,b],"transitions":false, MASK}   ("layer" or "tint" or both)
 //       transitions: the project's transitions are placed where layers meet, under the dabs and beside them
-//       (transitions.h) MASK:
-//       "min_slope_rad":0,"max_slope_rad":1.5708,"min_height_m":…,"max_height_m":…,"noise":0,
-//       "noise_size_m":8; it looks at the base map's ground, and noise (0 … 1) leaves patches of about that
-//       size out
+//       (transitions.h)
 //   {"cmd":"fill","rect":[x0,y0,x1,y1],"layer":"rock","tint":[r,g,b],"replace":"grass","strength":1,"seed":1,
-//    "transitions":false, MASK}   the same over a rectangle (without one: the map); only texels of "replace",
-//    if
-//       that is given. At most 33 million texels: a session cuts larger ones into a group (editor/fill.h)
+//    "transitions":false, MASK}
+//       the same over a rectangle (without one: the map); only texels of "replace", if that is given; at most
+//       33 million texels: a session cuts larger ones into a group (editor/fill.h)
+//       MASK, of the base map's ground: "min_slope_rad":0,"max_slope_rad":1.5708,"min_height_m":-16384,
+//       "max_height_m":16384,"noise":0,"noise_size_m":8 (GroundMask below says what they mean)
 //   {"cmd":"crater","x":…,"y":…,"radius_m":10,"depth_m":4,"seed":7,"heat":0.8}
 //   {"cmd":"footprints","prints":[{"x":…,"y":…,"heading_rad":…,"foot":0},…],"length_m":0.3,"depth_m":0.03,"seed":1}
 //       a print may have its own length_m, depth_m and seed; else print i has seed + i

@@ -14,7 +14,8 @@
 // | +7 | layers' metalness | LayerSet::metalness, LayerSet::sampler |
 // | +9 | distortion map, sampler2DArray | LayerSet::distortion_map(), LayerSet::sampler |
 // Specialisation constants: 21 where a layer has metal (LayerSet::has_metal), 40 tile hiding, 41 distortion,
-// 42 transitions, 44 vista UVs, 43 layers blended between their mips (LayerSet::smooth_sampler), 31 the optional channels (page_channels.glsl).
+// 42 transitions, 43 layers blended between their mips (LayerSet::smooth_sampler), 44 vista UVs, 31 the optional channels
+// (page_channels.glsl).
 //
 //     MaterialSample m = direct_material(rel.xy, log2_footprint, log2_distance_texel);
 // rel: camera-relative metres; log2 of metres a sample, and of the texel that vista UVs take the distance from (vista.h): of a
