@@ -7,6 +7,7 @@
 #include <thread>
 
 #include "document_fixture.h"
+#include "index_texels.h"
 #include "runtime/base/units.h"
 
 using namespace loam;
@@ -24,14 +25,6 @@ std::vector<int32_t> all_heights(const Document& document) {
     const auto lock = document.read_lock();
     document.read_heights_mm(0, 0, 0, s.height_samples_x, s.height_samples_y, heights.data());
     return heights;
-}
-
-std::vector<IndexTexel> all_texels(const Document& document) {
-    const glm::ivec2 size = document.index_size_texels();
-    std::vector<IndexTexel> texels(size_t(size.x) * size_t(size.y));
-    const auto lock = document.read_lock();
-    document.read_index(0, 0, 0, size.x, size.y, texels.data());
-    return texels;
 }
 
 int32_t height_at(const Document& document, int x, int y) {
@@ -56,7 +49,7 @@ bool covered(const std::vector<WorldRect>& rects, double x, double y) {
 void expect_mips_are_samples(const Document& document) {
     const auto& s = document.settings();
     const auto finest = all_heights(document);
-    const auto texels = all_texels(document);
+    const auto texels = read_texels(document);
     const glm::ivec2 size = document.index_size_texels();
     const auto lock = document.read_lock();
     for (int mip = 1; mip < document.height_mip_count(); ++mip) {
@@ -145,12 +138,12 @@ TEST(document, dirt_covers_every_change_and_is_tight) {
     for (int i = 0; i < 120; ++i) {
         const Command command = random_command(random, 20);
         const auto heights = all_heights(*document);
-        const auto texels = all_texels(*document);
+        const auto texels = read_texels(*document);
         const auto dirt = document->apply(command);
         if (!dirt.ok()) continue;
         EXPECT_LE(dirt->height.size(), 64u);
         const auto heights_after = all_heights(*document);
-        const auto texels_after = all_texels(*document);
+        const auto texels_after = read_texels(*document);
         const int width = document->settings().height_samples_x;
         for (size_t k = 0; k < heights.size(); ++k)
             if (heights[k] != heights_after[k]) {
@@ -251,7 +244,7 @@ TEST(document, painting_fills_a_solid_disc_and_keeps_to_slopes) {
             ->apply(command_of(
                 R"({"cmd":"paint","dabs":[[100,100]],"radius_m":5,"layer":"scree","strength":1,"hardness":1,"tint":[0.5,1,0]})"))
             .ok());
-    const auto texels = all_texels(*document);
+    const auto texels = read_texels(*document);
     const int width = document->index_size_texels().x;
     for (int y = 0; y < document->index_size_texels().y; ++y)
         for (int x = 0; x < width; ++x) {
@@ -267,7 +260,7 @@ TEST(document, painting_fills_a_solid_disc_and_keeps_to_slopes) {
     ASSERT_TRUE(document->apply(command_of(half)).ok());
     const auto count = [&] {
         size_t n = 0;
-        for (const IndexTexel& texel : all_texels(*document)) n += texel.layer == 1;
+        for (const IndexTexel& texel : read_texels(*document)) n += texel.layer == 1;
         return n;
     };
     const double share = double(count()) / (3.14159 * 30 * 30);
@@ -286,7 +279,7 @@ TEST(document, painting_fills_a_solid_disc_and_keeps_to_slopes) {
             ->apply(command_of(
                 R"({"cmd":"paint","dabs":[[60,160]],"radius_m":20,"layer":"dirt","hardness":1,"min_slope_rad":0.5})"))
             .ok());
-    const auto sloped = all_texels(*document);
+    const auto sloped = read_texels(*document);
     EXPECT_EQ(sloped[size_t(320 * width + 120 + 10)].layer, 1);  // 5 m east of the top
     EXPECT_EQ(sloped[size_t(320 * width + 120 + 30)].layer, 0);  // 15 m: flat
     expect_mips_are_samples(*document);
@@ -305,9 +298,9 @@ TEST(document, fills_replace_a_layer_where_the_ground_lets_them) {
         return texels[size_t(int(y_m * 2) * size.x + int(x_m * 2))];
     };
     apply(R"({"cmd":"paint","dabs":[[100,100]],"radius_m":20,"layer":"dirt","hardness":1})");
-    const auto before = all_texels(*document);
+    const auto before = read_texels(*document);
     apply(R"({"cmd":"fill","rect":[90,90,110,100],"layer":"scree","replace":"dirt","tint":[0,1,1]})");
-    const auto after = all_texels(*document);
+    const auto after = read_texels(*document);
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {
             const size_t i = size_t(y * size.x + x);
@@ -318,19 +311,19 @@ TEST(document, fills_replace_a_layer_where_the_ground_lets_them) {
     // Adjoining halves meet once: a tint of half strength is the same on both sides and on the line.
     apply(R"({"cmd":"fill","rect":[200,20,210,30],"tint":[0,0,0],"strength":0.5})");
     apply(R"({"cmd":"fill","rect":[210,20,220,30],"tint":[0,0,0],"strength":0.5})");
-    const auto halves = all_texels(*document);
+    const auto halves = read_texels(*document);
     for (double x = 200; x < 220; x += 0.5) ASSERT_EQ(at(halves, x, 25).tint[0], 128) << x;
     EXPECT_EQ(at(halves, 220, 25).tint[0], 255);
     // Heights: only the top of a hill.
     apply(R"({"cmd":"sculpt","mode":"raise","dabs":[[60,160]],"radius_m":10,"strength_m":20,"hardness":0})");
     apply(R"({"cmd":"fill","layer":"scree","min_height_m":22})");
-    const auto high = all_texels(*document);
+    const auto high = read_texels(*document);
     EXPECT_EQ(at(high, 60, 160).layer, 2);
     EXPECT_EQ(at(high, 69, 160).layer, 0) << "12 m and a little";
     // Noise: patches, neither nothing nor all, and what is left out is as it was.
     apply(R"({"cmd":"fill","layer":"dirt","noise":1,"noise_size_m":6,"seed":5})");
     size_t taken = 0, changed_tint = 0;
-    const auto patches = all_texels(*document);
+    const auto patches = read_texels(*document);
     for (size_t i = 0; i < patches.size(); ++i) {
         taken += patches[i].layer == 1 && high[i].layer != 1;
         changed_tint += patches[i].tint[0] != high[i].tint[0];
@@ -344,7 +337,7 @@ TEST(document, fills_replace_a_layer_where_the_ground_lets_them) {
     apply(R"({"cmd":"fill","rect":[-500,-500,-10,-10],"layer":"dirt"})");
     EXPECT_EQ(document->revision(), revision);
     for (int i = 0; i < 6; ++i) ASSERT_TRUE(document->undo().ok());
-    EXPECT_EQ(all_texels(*document), before);
+    EXPECT_EQ(read_texels(*document), before);
 }
 
 TEST(document, ten_thousand_raises_saturate) {
@@ -397,7 +390,7 @@ TEST(document, undo_and_redo_are_exact_over_random_commands) {
     EXPECT_GT(distinct.size(), digests.size() * 3 / 4) << "negative control: most steps change the digest";
     expect_mips_are_samples(*document);
     const auto heights = all_heights(*document);
-    const auto texels = all_texels(*document);
+    const auto texels = read_texels(*document);
     for (size_t i = digests.size() - 1; i > 0; --i) {
         const auto dirt = document->undo();
         ASSERT_TRUE(dirt.ok()) << dirt.message();
@@ -419,7 +412,7 @@ TEST(document, undo_and_redo_are_exact_over_random_commands) {
     EXPECT_FALSE(document->can_redo());
     EXPECT_EQ(document->redo().message(), "nothing to redo");
     EXPECT_EQ(all_heights(*document), heights);
-    EXPECT_TRUE(all_texels(*document) == texels);
+    EXPECT_TRUE(read_texels(*document) == texels);
     expect_sound(path);
 }
 
@@ -546,7 +539,7 @@ TEST(document, a_failed_transaction_leaves_the_old_state) {
     EXPECT_NE(status.message().find("terrain.db"), std::string::npos) << status.message();
     EXPECT_EQ(take(document->content_digest()), digest);
     EXPECT_EQ(document->revision(), revision);
-    for (const IndexTexel& texel : all_texels(*document)) ASSERT_EQ(texel.layer, 0);
+    for (const IndexTexel& texel : read_texels(*document)) ASSERT_EQ(texel.layer, 0);
     EXPECT_EQ(all_heights(*document), heights);
     ASSERT_TRUE(document->apply({paint}).ok()) << "works again with room";
     ASSERT_TRUE(document->undo().ok());

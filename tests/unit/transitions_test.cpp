@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/document/transitions.h"
+#include "tests/unit/index_texels.h"
 #include "tests/unit/map_fixture.h"
 
 namespace {
@@ -30,16 +31,6 @@ MapFixtureDesc desc() {
                             transition("dirt to scree", "dirt", "scree"),
                             transition("scree to grass", "scree", "grass"),
                             transition("gone", "dirt", "grass", true), transition("again", "grass", "dirt")}};
-}
-
-std::vector<int> read_layers(Document& document) {
-    const glm::ivec2 size = document.index_size_texels();
-    std::vector<IndexTexel> texels(size_t(size.x) * size_t(size.y));
-    const auto lock = document.read_lock();
-    document.read_index(0, 0, 0, size.x, size.y, texels.data());
-    std::vector<int> layers;
-    for (const IndexTexel& t : texels) layers.push_back(t.layer);
-    return layers;
 }
 
 void paint(MapFixture& f, const std::string& layer, glm::dvec2 at, double radius_m, bool transitions,
