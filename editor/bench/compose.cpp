@@ -153,7 +153,7 @@ Status bench_edits(Stage& stage, PageFormat format, BenchTable& table) {
             const double b = now_ms();
             stage.index->on_dirt(dirt->index);
             texture.on_index_dirt(dirt->index);
-            texture.on_dirt(dirt->texture);
+            texture.on_dirt(dirt->texture, dirt->texture_size_m);
             double plan_ms = now_ms() - b, index_ms = 0;
             auto ms = frame(&plan_ms, &index_ms);
             if (!ms) return ms.error();
@@ -171,7 +171,7 @@ Status bench_edits(Stage& stage, PageFormat format, BenchTable& table) {
             if (!undone) return undone.error();
             stage.index->on_dirt(undone->index);
             texture.on_index_dirt(undone->index);
-            texture.on_dirt(undone->texture);
+            texture.on_dirt(undone->texture, undone->texture_size_m);
             for (int k = 0; k == 0 || (texture.statistics().dirty_pages > 0 && k < 100); ++k)
                 if (auto more = frame(nullptr, nullptr); !more) return more.error();
             for (int k = 0; k < 2; ++k) {

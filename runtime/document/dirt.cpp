@@ -1,5 +1,6 @@
 #include "runtime/document/dirt.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "runtime/document/byte_stream.h"
@@ -65,6 +66,7 @@ void append_dirt(Dirt& to, const Dirt& more) {
     to.height.insert(to.height.end(), more.height.begin(), more.height.end());
     to.index.insert(to.index.end(), more.index.begin(), more.index.end());
     to.texture.insert(to.texture.end(), more.texture.begin(), more.texture.end());
+    to.texture_size_m = std::max(to.texture_size_m, more.texture_size_m);
 }
 
 std::vector<uint8_t> dirt_bytes(const Dirt& dirt) {
@@ -74,6 +76,7 @@ std::vector<uint8_t> dirt_bytes(const Dirt& dirt) {
         for (const WorldRect& rect : *rects)
             for (const double edge : {rect.min_x, rect.min_y, rect.max_x, rect.max_y}) writer.real(edge);
     }
+    writer.real(dirt.texture_size_m);
     return writer.take();
 }
 
@@ -91,6 +94,8 @@ Result<Dirt> dirt_of(std::span<const uint8_t> bytes) {
             rects->push_back(rect);
         }
     }
+    // Journals were once written without it.
+    dirt.texture_size_m = reader.at_end() ? INFINITY : reader.real();
     if (!reader.at_end()) return error("damaged rectangles of a command in the journal");
     return dirt;
 }

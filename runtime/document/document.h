@@ -36,10 +36,11 @@ namespace loam {
 //  beyond the edge give
 //    the nearest sample inside.
 //  - operators: their bounds in the map (operator.h), exactly.
-// `texture` holds what is drawn into the texture only (decals);
-// what follows from index or height is derived by the layers that read them.
+// `texture` holds what is drawn into the texture only (decals), the widest of which is texture_size_m across
+// (Operator::texture_size_m); what follows from index or height is derived by the layers that read them.
 struct Dirt {
     std::vector<WorldRect> height, index, texture;
+    double texture_size_m = 0;
     [[nodiscard]] bool empty() const { return height.empty() && index.empty() && texture.empty(); }
 };
 

@@ -125,6 +125,7 @@ void Document::Impl::change_operator(uint64_t id, std::optional<Operator> op, Ch
         append(change.dirt.height, state->height_rects());
         change.dirt.index.push_back(state->index_bounds());
         append(change.dirt.texture, state->texture_rects());
+        change.dirt.texture_size_m = std::max(change.dirt.texture_size_m, state->texture_size_m());
     }
     change.operators[id] = std::move(op);
 }

@@ -234,9 +234,35 @@ VolumeAxes axes_of(const VolumeDecal& volume) {
     return {x * c + y * s, y * c - x * s, z};
 }
 
+std::array<glm::dvec2, 4> box_of(const Footprint& print) {
+    const double s = std::sin(print.heading_rad), c = std::cos(print.heading_rad);
+    const glm::dvec2 at(print.x_m, print.y_m);
+    const glm::dvec2 right = glm::dvec2(c, -s) * (print.length_m * double(kFootprintHalfWidth));
+    const glm::dvec2 ahead = glm::dvec2(s, c) * (print.length_m * double(kFootprintHalfLength));
+    return {at - right - ahead, at + right - ahead, at + right + ahead, at - right + ahead};
+}
+
 WorldRect bounds_of(const Footprint& print) {
-    const glm::dvec2 half(double(kFootprintHalfWidth), double(kFootprintHalfLength));
-    return turned_box(print.x_m, print.y_m, print.length_m * half, print.heading_rad);
+    WorldRect bounds;
+    for (const glm::dvec2& corner : box_of(print))
+        bounds = united(bounds, {corner.x, corner.y, corner.x, corner.y});
+    return bounds;
+}
+
+double size_m(const Crater& crater) {
+    return 2 * crater.radius_m;
+}
+double size_m(const Footprint& print) {
+    return 0.6 * print.length_m;
+}
+double size_m(const TerrainDecal& decal) {
+    return 2 * std::min(std::abs(decal.half_m.x), std::abs(decal.half_m.y));
+}
+double size_m(const SplineDecal& spline) {
+    return 2 * path_of(spline).half_width_m();
+}
+double size_m(const VolumeDecal& volume) {
+    return 2 * std::min(std::abs(volume.half_m.x), std::abs(volume.half_m.y));
 }
 
 void prepare(Operator& op) {
@@ -264,6 +290,10 @@ WorldRect Operator::index_bounds() const {
 
 WorldRect Operator::texture_bounds() const {
     return all_of(texture_rects());
+}
+
+double Operator::texture_size_m() const {
+    return std::visit([](const auto& kind) { return size_m(kind); }, shape);
 }
 
 void apply_height(const Operator& op, const SampleGrid<double>& heights_m) {

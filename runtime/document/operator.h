@@ -31,7 +31,16 @@ struct Footprint {
     int foot = 0;            // 0 left, 1 right
     uint32_t seed = 0;
 };
-[[nodiscard]] WorldRect bounds_of(const Footprint& print);  // outside it a print changes nothing
+// A turned box, and the world rectangle around it: outside either a print changes nothing.
+[[nodiscard]] std::array<glm::dvec2, 4> box_of(const Footprint& print);
+[[nodiscard]] WorldRect bounds_of(const Footprint& print);
+
+// Across what is drawn of it, at its narrowest: it fades where that is less than a texel.
+[[nodiscard]] double size_m(const Crater& crater);
+[[nodiscard]] double size_m(const Footprint& print);
+[[nodiscard]] double size_m(const TerrainDecal& decal);
+[[nodiscard]] double size_m(const SplineDecal& spline);
+[[nodiscard]] double size_m(const VolumeDecal& volume);
 
 using OperatorShape = std::variant<Crater, Footprint, TerrainDecal, SplineDecal, VolumeDecal>;
 [[nodiscard]] const DecalMaterial* material_of(const OperatorShape& shape);  // null: has none
@@ -51,6 +60,8 @@ struct Operator {
     // none.
     [[nodiscard]] std::vector<WorldRect> height_rects() const;
     [[nodiscard]] std::vector<WorldRect> texture_rects() const;
+    // Of what is drawn into the texture: from texels twice as wide on none of it shows. 0: draws nothing.
+    [[nodiscard]] double texture_size_m() const;
 };
 
 // Works out what is kept beside an operator's parameters (a spline's path). Every operator of a document has

@@ -355,8 +355,7 @@ void Renderer::on_dirt(const Dirt& dirt) {
     r.shadows->on_dirt(dirt.height, *r.heights);
     r.heights->on_dirt(dirt.height);
     r.indices->on_dirt(dirt.index);
-    r.textures.on_dirt(dirt.index, dirt.texture);
-    r.textures.on_height_dirt(dirt.height);
+    r.textures.on_dirt(dirt);
 }
 
 void Renderer::announce(const std::optional<Camera>& camera) {

@@ -1,5 +1,7 @@
 #include "runtime/frame/texture_swap.h"
 
+#include "runtime/document/document.h"
+
 namespace loam {
 
 namespace {
@@ -38,17 +40,13 @@ Status TextureSwap::take_settings() {
     return {};
 }
 
-void TextureSwap::on_dirt(std::span<const WorldRect> index, std::span<const WorldRect> texture) {
+void TextureSwap::on_dirt(const Dirt& dirt) {
     for (VirtualTexture* t : {shown_.get(), next_.get()}) {
         if (!t) continue;
-        t->on_index_dirt(index);
-        t->on_dirt(texture);
+        t->on_index_dirt(dirt.index);
+        t->on_dirt(dirt.texture, dirt.texture_size_m);
+        t->on_height_dirt(dirt.height);
     }
-}
-
-void TextureSwap::on_height_dirt(std::span<const WorldRect> rects) {
-    for (VirtualTexture* t : {shown_.get(), next_.get()})
-        if (t) t->on_height_dirt(rects);
 }
 
 bool TextureSwap::next_is_ready(const TextureView& view, bool seen) const {

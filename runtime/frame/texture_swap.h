@@ -13,6 +13,8 @@
 
 namespace loam {
 
+struct Dirt;
+
 // What a texture is made from; all outlive it.
 struct TextureSources {
     gpu::Device& device;
@@ -40,8 +42,7 @@ class TextureSwap {
 
     // After LayerSet::take_settings.
     Status take_settings();
-    void on_dirt(std::span<const WorldRect> index, std::span<const WorldRect> texture);
-    void on_height_dirt(std::span<const WorldRect> rects);
+    void on_dirt(const Dirt& dirt);
     // The frame's steps, of both; `seen`: the picture is shaded from the texture. request_inputs swaps first.
     void request_inputs(const TextureView& view, bool seen);
     Status update(gpu::FrameRing& ring, gpu::Commands& commands, const TextureView& view);

@@ -17,22 +17,27 @@ using gpu::Access;
 
 static_assert(kIndexPageBorder == kIndexBorder && kIndexPageTexels == kIndexTexels);
 
-// Units (blocks, or texels where nothing is compressed) of one mip of a rectangle.
-glm::ivec2 encoded_size(const TexelRect& rect, int mip, const PageTextures& textures) {
-    const int step = textures.unit_texels << mip;
-    return {rect.width() / step, rect.height() / step};
+constexpr int kBlockTexels = 4;
+
+// Blocks across one mip of a rectangle.
+glm::ivec2 blocks_across(const TexelRect& rect, int mip) {
+    return glm::ivec2(rect.width(), rect.height()) / (kBlockTexels << mip);
 }
 
-// Per texture, of the encoded mips, in units.
-uint32_t encoded_units(const TexelRect& rect, const PageTextures& textures) {
-    uint32_t units = 0;
-    for (int mip = textures.first_encoded_mip; mip < 2; ++mip) {
-        const glm::ivec2 size = encoded_size(rect, mip, textures);
-        units += uint32_t(size.x * size.y);
-    }
-    return units;
+// Of both mips of one texture.
+uint32_t block_count(const TexelRect& rect) {
+    uint32_t blocks = 0;
+    for (int mip = 0; mip < 2; ++mip)
+        blocks += uint32_t(blocks_across(rect, mip).x * blocks_across(rect, mip).y);
+    return blocks;
 }
 
+// The texel of the page textures that a rectangle begins at.
+glm::ivec2 target_of(const ComposeJob& job) {
+    return job.target * kPageTexels + glm::ivec2(job.rect.x0, job.rect.y0);
+}
+
+constexpr uint32_t kPageTextureSlot = 4;                               // of mip_rgba8.comp
 constexpr int kOneLayerKind = 1, kTransitionKind = 2, kVistaKind = 4;  // bits of a square's kind
 
 // Of a place in something that repeats every period_m: 0 … 1.
@@ -52,7 +57,7 @@ struct Composer::Placed {
     ComposeJob job;
     shared::ComposeRect rect{};
     std::vector<Tile> tiles;  // row by row
-    [[nodiscard]] bool is_second_mip() const { return rect.units == 0; }
+    [[nodiscard]] bool is_second_mip() const { return rect.target.x < 0; }
 };
 
 // What the shaders of a batch read: rectangles, and their squares, kind after kind.
@@ -90,27 +95,32 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
                                              VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT});
     if (!scratch.ok()) return scratch.error();
     composer->scratch_ = std::move(*scratch);
-    const uint64_t units =
-        encoded_units({0, 0, kScratchWidth, kScratchHeight}, textures) * uint64_t(textures.count);
-    auto encoded = gpu::Buffer::create(device, {.name = "page blocks",
-                                                .size_bytes = units * uint64_t(textures.unit_bytes),
-                                                .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
-    if (!encoded.ok()) return encoded.error();
-    composer->encoded_ = std::move(*encoded);
+    const bool compressed = is_compressed(textures.format);
+    if (compressed) {
+        const uint64_t blocks = block_count({0, 0, kScratchWidth, kScratchHeight}) * uint64_t(textures.count);
+        auto buffer = gpu::Buffer::create(device, {.name = "page blocks",
+                                                   .size_bytes = blocks * uint64_t(textures.block_bytes),
+                                                   .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT});
+        if (!buffer.ok()) return buffer.error();
+        composer->blocks_ = std::move(*buffer);
+    }
     auto nearest = gpu::Sampler::create(device, {.filter = VK_FILTER_NEAREST});
     if (!nearest.ok()) return nearest.error();
     composer->nearest_ = std::move(*nearest);
 
     LOAM_TRY(composer->take_settings());
-    for (int mip = textures.first_encoded_mip; mip < 2; ++mip) {
-        const bool blocks = is_compressed(textures.format);
+    std::vector<gpu::Binding> bindings{gpu::sampled_image(0), gpu::storage_buffer(2), gpu::storage_buffer(3)};
+    if (compressed) bindings.push_back(gpu::storage_buffer(1));
+    for (uint32_t i = 0; !compressed && i < kMaxPageTextures; ++i)
+        bindings.push_back(gpu::storage_image(kPageTextureSlot + i));
+    for (int mip = compressed ? 0 : 1; mip < 2; ++mip) {
         auto encode = gpu::Pipeline::create(
-            device, gpu::ComputeDesc{.name = blocks ? "page blocks" : "page rgba8",
-                                     .shader = blocks ? "texture/page_blocks.comp" : "texture/mip_rgba8.comp",
-                                     .bindings = {gpu::sampled_image(0), gpu::storage_buffer(1),
-                                                  gpu::storage_buffer(2), gpu::storage_buffer(3)},
-                                     .push_bytes = sizeof(shared::EncodePush),
-                                     .constants = {{0, uint32_t(mip)}, {30, textures.layout}}});
+            device, gpu::ComputeDesc{
+                        .name = compressed ? "page blocks" : "page mips",
+                        .shader = compressed ? "texture/page_blocks.comp" : "texture/mip_rgba8.comp",
+                        .bindings = bindings,
+                        .push_bytes = sizeof(shared::EncodePush),
+                        .constants = {{0, uint32_t(mip)}, {1, textures.count > 3}, {30, textures.layout}}});
         if (!encode.ok()) return encode.error();
         composer->encode_[mip] = std::move(*encode);
     }
@@ -219,8 +229,9 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
         .mip_min = {-1, -1},
         .first_place = 0,
         .last_layer = uint32_t(layers_.count - 1),
-        .first_unit = 0,
-        .units = encoded_units(job.rect, textures_)};
+        .target = target_of(job),
+        .first_block = 0,
+        .blocks = block_count(job.rect)};
 
     const GroundSettings& ground = layers_.ground;
     const double reach = ground.distortion_amplitude_m / spacing_m;
@@ -306,7 +317,7 @@ Status Composer::cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std:
         if (mip) {
             batch.back().rect.mip_min = {at.x + own_width, at.y};
             batch.push_back(prepare(*mip, {at.x + own_width, at.y}));
-            batch.back().rect.units = 0;
+            batch.back().rect.target = {-1, -1};
         }
         at.x += width;
         shelf_height = std::max(shelf_height, height);
@@ -320,20 +331,25 @@ Status Composer::cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::v
     const Work work = upload(ring, batch);
     cmd_materials(ring, commands, batch, work);
     if (decals_) LOAM_TRY(cmd_decals(ring, commands, batch));
-    cmd_encode(commands, work);
-    cmd_copy(commands, batch, atlas);
+    if (is_compressed(textures_.format)) {
+        cmd_encode_blocks(commands, work);
+        cmd_copy_blocks(commands, batch, atlas);
+    } else {
+        cmd_copy_texels(commands, batch, atlas);
+        cmd_write_mips(commands, work, atlas);
+    }
     return {};
 }
 
 // Fills in where each rectangle's places and output begin.
 Composer::Work Composer::upload(gpu::FrameRing& ring, std::span<Placed> batch) {
     Work work;
-    uint32_t units = 0;
+    uint32_t blocks = 0;
     for (size_t i = 0; i < batch.size(); ++i) {
         shared::ComposeRect& rect = batch[i].rect;
         rect.first_place = uint32_t(i * size_t(layers_.count));
-        rect.first_unit = units;
-        units += rect.units * uint32_t(textures_.count);
+        rect.first_block = blocks;
+        if (!batch[i].is_second_mip()) blocks += rect.blocks * uint32_t(textures_.count);
         work.tile_count += uint32_t(batch[i].tiles.size());
         for (const Placed::Tile& tile : batch[i].tiles) ++work.kind_tiles[size_t(tile.kind)];
     }
@@ -410,69 +426,93 @@ Status Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::
     return decals_->cmd_record(ring, commands, list, layers_, scratch_, {uint32_t(used.x), uint32_t(used.y)});
 }
 
-void Composer::cmd_encode(gpu::Commands& commands, const Work& work) {
+void Composer::cmd_encode_blocks(gpu::Commands& commands, const Work& work) {
     auto pass = commands.pass("texture encode",
-                              {{scratch_, Access::compute_sampled}, {encoded_, Access::compute_storage}});
+                              {{scratch_, Access::compute_sampled}, {blocks_, Access::compute_storage}});
     shared::EncodePush push{.tile_count = work.tile_count, .weights = {}};
     std::copy_n(textures_.layout == kPagePairs ? kPairWeights : kRowWeights, kMaxPageTextures, push.weights);
-    for (int mip = textures_.first_encoded_mip; mip < 2; ++mip) {
+    for (int mip = 0; mip < 2; ++mip) {
         commands.bind(encode_[mip], {{0, scratch_.view(), nearest_},
-                                     {1, encoded_},
+                                     {1, blocks_},
                                      {2, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
                                      {3, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes}});
         commands.push(encode_[mip], push);
-        // Threads a group and units a tile, as the two shaders have them.
-        const bool blocks = is_compressed(textures_.format);
-        const uint32_t threads = blocks ? 8 : 64, units = !blocks ? 16 : mip == 0 ? 4 : 1;
-        commands.dispatch((work.tile_count * units + threads - 1) / threads, uint32_t(textures_.count));
+        // Threads a group and blocks a tile, as the shader has them.
+        const uint32_t threads = 8, blocks = mip == 0 ? 4 : 1;
+        commands.dispatch((work.tile_count * blocks + threads - 1) / threads, uint32_t(textures_.count));
     }
 }
 
-void Composer::cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas) {
-    std::vector<gpu::Use> uses = {{encoded_, Access::copy_source}, {scratch_, Access::copy_source}};
+void Composer::cmd_copy_blocks(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas) {
+    std::vector<gpu::Use> uses = {{blocks_, Access::copy_source}};
     for (gpu::Image& image : atlas) uses.emplace_back(image, Access::copy_target);
     auto pass = commands.pass("texture copy", uses);
-    const int first_mip = textures_.first_encoded_mip;
-    std::vector<VkBufferImageCopy> encoded;
-    std::vector<VkImageCopy> copied;
+    std::vector<VkBufferImageCopy> copies;
     for (uint32_t which = 0; which < uint32_t(textures_.count); ++which) {
-        encoded.clear();
-        copied.clear();
+        copies.clear();
         for (const Placed& placed : batch) {
             if (placed.is_second_mip()) continue;
             const TexelRect& rect = placed.job.rect;
-            const glm::ivec2 corner = placed.job.target * kPageTexels + glm::ivec2(rect.x0, rect.y0);
-            uint64_t unit = placed.rect.first_unit + uint64_t(which) * placed.rect.units;
-            for (int mip = first_mip; mip < 2; ++mip) {
-                encoded.push_back(
-                    {.bufferOffset = unit * uint64_t(textures_.unit_bytes),
+            const glm::ivec2 at = placed.rect.target;
+            uint64_t block = placed.rect.first_block + uint64_t(which) * placed.rect.blocks;
+            for (int mip = 0; mip < 2; ++mip) {
+                copies.push_back(
+                    {.bufferOffset = block * uint64_t(textures_.block_bytes),
                      .bufferRowLength = 0,
                      .bufferImageHeight = 0,
                      .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, uint32_t(mip), 0, 1},
-                     .imageOffset = {corner.x >> mip, corner.y >> mip, 0},
+                     .imageOffset = {at.x >> mip, at.y >> mip, 0},
                      .imageExtent = {uint32_t(rect.width()) >> mip, uint32_t(rect.height()) >> mip, 1}});
-                const glm::ivec2 size = encoded_size(rect, mip, textures_);
-                unit += uint64_t(size.x) * uint64_t(size.y);
+                const glm::ivec2 size = blocks_across(rect, mip);
+                block += uint64_t(size.x) * uint64_t(size.y);
             }
-            const glm::ivec2 from = placed.rect.scratch_min;
-            copied.push_back({.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, which, 1},
-                              .srcOffset = {from.x, from.y, 0},
-                              .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
-                              .dstOffset = {corner.x, corner.y, 0},
-                              .extent = {uint32_t(rect.width()), uint32_t(rect.height()), 1}});
         }
-        vkCmdCopyBufferToImage(commands.handle(), encoded_.handle(), atlas[which].handle(),
-                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(encoded.size()),
-                               encoded.data());
-        if (first_mip > 0)
-            vkCmdCopyImage(commands.handle(), scratch_.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
-                           atlas[which].handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL,
-                           uint32_t(copied.size()), copied.data());
+        vkCmdCopyBufferToImage(commands.handle(), blocks_.handle(), atlas[which].handle(),
+                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(copies.size()), copies.data());
     }
 }
 
+void Composer::cmd_copy_texels(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas) {
+    std::vector<gpu::Use> uses = {{scratch_, Access::copy_source}};
+    for (gpu::Image& image : atlas) uses.emplace_back(image, Access::copy_target);
+    auto pass = commands.pass("texture copy", uses);
+    std::vector<VkImageCopy> copies;
+    for (uint32_t which = 0; which < uint32_t(textures_.count); ++which) {
+        copies.clear();
+        for (const Placed& placed : batch) {
+            if (placed.is_second_mip()) continue;
+            const glm::ivec2 from = placed.rect.scratch_min, to = placed.rect.target;
+            const glm::uvec2 size(placed.rect.rect_size);
+            copies.push_back({.srcSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, which, 1},
+                              .srcOffset = {from.x, from.y, 0},
+                              .dstSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1},
+                              .dstOffset = {to.x, to.y, 0},
+                              .extent = {size.x, size.y, 1}});
+        }
+        vkCmdCopyImage(commands.handle(), scratch_.handle(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
+                       atlas[which].handle(), VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(copies.size()),
+                       copies.data());
+    }
+}
+
+void Composer::cmd_write_mips(gpu::Commands& commands, const Work& work, PageAtlas& atlas) {
+    std::vector<gpu::Use> uses = {{scratch_, Access::compute_sampled}};
+    for (gpu::Image& image : atlas) uses.emplace_back(image, Access::compute_storage);
+    auto pass = commands.pass("texture encode", uses);
+    const gpu::Pipeline& pipeline = encode_[1];
+    std::vector<gpu::Bound> bound{{0, scratch_.view(), nearest_},
+                                  {2, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
+                                  {3, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes}};
+    for (size_t i = 0; i < kMaxPageTextures; ++i)
+        bound.emplace_back(kPageTextureSlot + uint32_t(i), atlas[std::min(i, atlas.size() - 1)].mip_view(1));
+    commands.bind(pipeline, bound);
+    commands.push(pipeline, shared::EncodePush{.tile_count = work.tile_count, .weights = {}});
+    const uint32_t threads = 64, texels = 16;  // a group's, and a tile's of mip 1
+    commands.dispatch((work.tile_count * texels + threads - 1) / threads);
+}
+
 uint64_t Composer::gpu_bytes() const {
-    return scratch_.bytes() + encoded_.size_bytes();
+    return scratch_.bytes() + (blocks_ ? blocks_.size_bytes() : 0);
 }
 
 }  // namespace loam

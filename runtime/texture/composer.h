@@ -72,8 +72,12 @@ class Composer {
     void cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch,
                        const Work& work);
     Status cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const Placed> batch);
-    void cmd_encode(gpu::Commands& commands, const Work& work);
-    void cmd_copy(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas);
+    // Of compressed formats.
+    void cmd_encode_blocks(gpu::Commands& commands, const Work& work);
+    void cmd_copy_blocks(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas);
+    // Of the others.
+    void cmd_copy_texels(gpu::Commands& commands, std::span<const Placed> batch, PageAtlas& atlas);
+    void cmd_write_mips(gpu::Commands& commands, const Work& work, PageAtlas& atlas);
 
     gpu::Device& device_;
     const Document& document_;
@@ -82,13 +86,13 @@ class Composer {
     TextureLayout layout_;
     PageTextures textures_;
     gpu::Image scratch_;  // see shaders/texture/page_format.h
-    gpu::Buffer encoded_;
+    gpu::Buffer blocks_;  // of compressed formats
     gpu::Sampler nearest_;
     // By one layer only (1), transitions (2) and vista UVs (4): a square of 8 texels runs the one for what is
     // in it.
     static constexpr size_t kKinds = 8;
     std::array<gpu::Pipeline, kKinds> materials_;
-    gpu::Pipeline encode_[2];
+    gpu::Pipeline encode_[2];  // by mip; mip 0 of uncompressed pages is a copy
     std::optional<DecalPasses> decals_;
     std::array<bool, 4> features_{};  // tile hiding, distortion, transitions, vista: of the pipelines
 };

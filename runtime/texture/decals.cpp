@@ -22,6 +22,20 @@ WorldRect square_around(double x_m, double y_m, double half_m) {
     return {x_m - half_m, y_m - half_m, x_m + half_m, y_m + half_m};
 }
 
+// The bounds of a convex outline between two latitudes; empty where it has nothing there.
+WorldRect slice_of(const std::array<glm::dvec2, 4>& outline, double min_y_m, double max_y_m) {
+    WorldRect slice;
+    for (size_t i = 0; i < outline.size(); ++i) {
+        glm::dvec2 a = outline[i], b = outline[(i + 1) % outline.size()];
+        if (a.y > b.y) std::swap(a, b);
+        if (b.y < min_y_m || a.y > max_y_m) continue;
+        const auto at = [&](double y) { return b.y > a.y ? a + (b - a) * ((y - a.y) / (b.y - a.y)) : a; };
+        for (const glm::dvec2& p : {a.y < min_y_m ? at(min_y_m) : a, b.y > max_y_m ? at(max_y_m) : b})
+            slice = united(slice, {p.x, p.y, p.x, p.y});
+    }
+    return slice;
+}
+
 // What both paths take from a crater or a footprint; the place stays in doubles.
 struct MarkSource {
     DecalKind kind = DecalKind::crater;
@@ -33,21 +47,21 @@ struct MarkSource {
 };
 
 MarkSource source_of(const Crater& c) {
-    return {.kind = DecalKind::crater,
-            .x_m = c.x_m,
-            .y_m = c.y_m,
-            .size_m = c.radius_m * 2,
-            .reach_m = c.radius_m * double(kCraterMarkReach),
-            .shape = {float(c.radius_m), float(c.depth_m > 0 ? c.depth_m : c.radius_m * 0.4),
-                      float(c.heat), 0},
-            .seed = c.seed};
+    return {
+        .kind = DecalKind::crater,
+        .x_m = c.x_m,
+        .y_m = c.y_m,
+        .size_m = size_m(c),
+        .reach_m = c.radius_m * double(kCraterMarkReach),
+        .shape = {float(c.radius_m), float(c.depth_m > 0 ? c.depth_m : c.radius_m * 0.4), float(c.heat), 0},
+        .seed = c.seed};
 }
 
 MarkSource source_of(const Footprint& f) {
     return {.kind = DecalKind::footprint,
             .x_m = f.x_m,
             .y_m = f.y_m,
-            .size_m = f.length_m * 0.6,
+            .size_m = size_m(f),
             .reach_m = f.length_m * double(kFootprintReach),
             .shape = {float(f.length_m), float(f.depth_m), float(std::sin(f.heading_rad)),
                       float(std::cos(f.heading_rad))},
@@ -81,6 +95,18 @@ struct PageDecals {
         return intersected(page_texels(layout, page, bounds), rect);
     }
 
+    // The texels whose centres lie in a rectangle, or so near it that the shader's floats may see them there.
+    static constexpr double kCentreMargin = 1.0 / 64;  // texels
+    [[nodiscard]] TexelRect centred_in(const WorldRect& world) const {
+        const auto at = [&](double m, double origin_m) {
+            return (m - origin_m) / texel_m + kPageBorder - 0.5;
+        };
+        const auto first = [](double u) { return clamped_int(std::ceil(u - kCentreMargin)); };
+        const auto end = [](double u) { return clamped_int(std::floor(u + kCentreMargin)) + 1; };
+        return {first(at(world.min_x, square.min_x)), first(at(world.min_y, square.min_y)),
+                end(at(world.max_x, square.min_x)), end(at(world.max_y, square.min_y))};
+    }
+
     void add_to_run(DecalPass pass, DecalKind kind, bool even, size_t index) const {
         auto& runs = list.runs[size_t(pass)];
         if (runs.empty() || runs.back().kind != kind || runs.back().even != even ||
@@ -89,13 +115,10 @@ struct PageDecals {
         ++runs.back().count;
     }
 
-    void mark(const MarkSource& source, const WorldRect& bounds) const {
+    // The caller adds quads.
+    [[nodiscard]] shared::DecalInstance mark(const MarkSource& source) const {
         shared::DecalInstance instance{};
         instance.fade = shared::decal_fade(float(source.size_m), float(texel_m));
-        const TexelRect quad = covered(bounds);
-        if (instance.fade <= 0 || quad.empty()) return;
-        instance.quad_min = glm::ivec2(quad.x0, quad.y0) + shift;
-        instance.quad_size = {quad.width(), quad.height()};
         instance.page_shift = shift;
         instance.center_texel = {float((source.x_m - square.min_x) / texel_m + kPageBorder),
                                  float((source.y_m - square.min_y) / texel_m + kPageBorder)};
@@ -103,7 +126,14 @@ struct PageDecals {
         instance.shape = source.shape;
         instance.seed = source.seed;
         instance.foot = source.foot;
-        add_to_run(DecalPass::terrain, source.kind, true, list.marks.size());
+        return instance;
+    }
+
+    void add_quad(shared::DecalInstance instance, DecalKind kind, const TexelRect& quad) const {
+        if (quad.empty()) return;
+        instance.quad_min = glm::ivec2(quad.x0, quad.y0) + shift;
+        instance.quad_size = {quad.width(), quad.height()};
+        add_to_run(DecalPass::terrain, kind, true, list.marks.size());
         list.marks.push_back(instance);
     }
 
@@ -119,9 +149,29 @@ struct PageDecals {
     }
 
     void operator()(const Crater& c) const {
-        mark(source_of(c), square_around(c.x_m, c.y_m, source_of(c).reach_m));
+        const MarkSource source = source_of(c);
+        if (shown(source.size_m))
+            add_quad(mark(source), source.kind, covered(square_around(c.x_m, c.y_m, source.reach_m)));
     }
-    void operator()(const Footprint& f) const { mark(source_of(f), bounds_of(f)); }
+    // In bands of rows, each as wide as the print's turned box is there, and no texel whose centre is not in
+    // it: the shader's print is 0 outside, and of a slanting or a small print most of the bounds is.
+    void operator()(const Footprint& f) const {
+        constexpr int kBand = 8;  // texels
+        const MarkSource source = source_of(f);
+        const TexelRect all = intersected(centred_in(bounds_of(f)), rect);
+        if (all.empty() || !shown(source.size_m)) return;
+        const shared::DecalInstance instance = mark(source);
+        const std::array<glm::dvec2, 4> box = box_of(f);
+        const auto center_y_m = [&](int row) { return square.min_y + (row + 0.5 - kPageBorder) * texel_m; };
+        for (int y0 = all.y0, y1 = 0; y0 < all.y1; y0 = y1) {
+            y1 = std::min(all.y1, (y0 / kBand + 1) * kBand);
+            const double margin_m = kCentreMargin * texel_m;
+            const WorldRect slice = slice_of(box, center_y_m(y0) - margin_m, center_y_m(y1 - 1) + margin_m);
+            if (slice.empty()) continue;
+            const TexelRect across = centred_in(slice);
+            add_quad(instance, source.kind, intersected(all, TexelRect{across.x0, y0, across.x1, y1}));
+        }
+    }
     void operator()(const TerrainDecal& decal, const WorldRect& bounds) const {
         const TexelRect quad = covered(bounds);
         if (quad.empty() || !shown(size_m(decal))) return;

@@ -48,14 +48,9 @@ Result<PageTextures> page_textures(PageFormat format, std::span<const Channel> c
         t.count = 2;
         t.vk_format = VK_FORMAT_BC3_UNORM_BLOCK;
         t.layout = kPagePairs;
-        t.unit_bytes = 16;
+        t.block_bytes = 16;
     }
-    if (!is_compressed(format)) {
-        t.vk_format = VK_FORMAT_R8G8B8A8_UNORM;
-        t.unit_texels = 1;
-        t.unit_bytes = 4;
-        t.first_encoded_mip = 1;
-    }
+    if (!is_compressed(format)) t.vk_format = VK_FORMAT_R8G8B8A8_UNORM;
     return t;
 }
 
@@ -67,6 +62,9 @@ Result<PageAtlas> make_page_atlas(gpu::Device& device, const PageTextures& textu
                                   uint32_t pages_y) {
     static constexpr const char* kNames[kMaxPageTextures] = {"page texture 0", "page texture 1",
                                                              "page texture 2", "page texture 3"};
+    // The encoder of blocks writes to a buffer, that of plain texels into the texture.
+    const VkImageUsageFlags written =
+        is_compressed(textures.format) ? VkImageUsageFlags(0) : VK_IMAGE_USAGE_STORAGE_BIT;
     PageAtlas atlas;
     for (int i = 0; i < textures.count; ++i) {
         auto image = gpu::Image::create(
@@ -76,7 +74,7 @@ Result<PageAtlas> make_page_atlas(gpu::Device& device, const PageTextures& textu
                      .height = pages_y * kPageTexels,
                      .mip_count = 2,
                      .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                              VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+                              VK_IMAGE_USAGE_TRANSFER_DST_BIT | written});
         if (!image.ok()) return image.error();
         atlas.push_back(std::move(*image));
     }

@@ -30,9 +30,7 @@ struct PageTextures {
     VkFormat vk_format = VK_FORMAT_BC1_RGB_UNORM_BLOCK;
     uint32_t layout = kPageRows;  // of the channels, as the shaders take it
     uint32_t placement = 0;       // of the optional channels, likewise
-    int unit_texels = 4;          // side of what the encoder writes at once: a block, or a texel
-    int unit_bytes = 8;
-    int first_encoded_mip = 0;  // mip 0 of uncompressed pages is a copy of scratch
+    int block_bytes = 8;          // of compressed pages
     int scratch_layers = 3;
 };
 

@@ -119,16 +119,6 @@ bool even_channels(const DecalMaterial& material) {
     return c.gloss == c.normal && c.gloss == c.occlusion && c.gloss == c.metalness;
 }
 
-double size_m(const TerrainDecal& decal) {
-    return 2 * std::min(std::abs(decal.half_m.x), std::abs(decal.half_m.y));
-}
-double size_m(const VolumeDecal& volume) {
-    return 2 * std::min(std::abs(volume.half_m.x), std::abs(volume.half_m.y));
-}
-double size_m(const SplineDecal& spline) {
-    return 2 * spline.path->half_width_m();
-}
-
 int ground_level(const Document& document, double texel_m) {
     const int coarsest = document.settings().refine + document.height_mip_count() - 1;
     const double finest_m = finest_height_spacing(document.settings());

@@ -30,11 +30,6 @@ class LayerSet;
 // Whether every target's channels have one weight, so that one draw will do (paint.frag).
 [[nodiscard]] bool even_channels(const DecalMaterial& material);
 
-// Of what fades when smaller than a texel (decal_fade).
-[[nodiscard]] double size_m(const TerrainDecal& decal);
-[[nodiscard]] double size_m(const VolumeDecal& volume);
-[[nodiscard]] double size_m(const SplineDecal& spline);
-
 // The level of the height map whose samples a page under a volume is looked up in: the finest that is no
 // finer than the page's texels.
 [[nodiscard]] int ground_level(const Document& document, double texel_m);

@@ -212,7 +212,7 @@ Status VirtualTexture::take_settings() {
     LOAM_TRY(impl_->make_direct_places());
     constexpr double kEverywhere_m = 1.0e6;
     const WorldRect everywhere{-kEverywhere_m, -kEverywhere_m, kEverywhere_m, kEverywhere_m};
-    on_dirt({&everywhere, 1});
+    on_dirt({&everywhere, 1}, INFINITY);
     return {};
 }
 

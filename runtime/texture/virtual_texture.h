@@ -90,8 +90,9 @@ class VirtualTexture {
     ~VirtualTexture();
 
     // World rectangles whose texels change: decals, and index dirt grown by one index spacing of level 0 (its
-    // filter). What coarser levels need beyond that is added here.
-    void on_dirt(std::span<const WorldRect> rects);
+    // filter). What coarser levels need beyond that is added here. Pages that are too coarse to show a decal
+    // of size_m (Dirt::texture_size_m) stay as they are; what has no size is infinitely large.
+    void on_dirt(std::span<const WorldRect> rects, double size_m);
     // Index dirt as the document tells it: grows it and calls on_dirt.
     void on_index_dirt(std::span<const WorldRect> rects);
     // After LayerSet::take_settings: every page is composed again.

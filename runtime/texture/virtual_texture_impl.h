@@ -98,6 +98,7 @@ struct VirtualTexture::Impl {
     [[nodiscard]] ComposeJob make_job(int place, const TexelRect& rect, const MapPage& from) const;
     // Wanted pages that were composed from coarser inputs.
     [[nodiscard]] uint32_t low_res_count() const;
+    [[nodiscard]] bool shows(const PageId& page, double size_m) const;  // a decal of this size
     [[nodiscard]] bool has_dirt() const { return !dirty.empty(); }
 
     // virtual_texture.cpp

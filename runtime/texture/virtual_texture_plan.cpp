@@ -6,6 +6,7 @@
 #include "runtime/maps/base_window.h"
 #include "runtime/texture/paint_decals.h"
 #include "runtime/texture/virtual_texture_impl.h"
+#include "shaders/texture/decal_io.h"
 
 namespace loam {
 
@@ -417,12 +418,17 @@ void VirtualTexture::request_inputs(const TextureView& view) {
     for (const PageRequest& request : t.missing) ask(request.page, 2 * kInputLookahead);
 }
 
-void VirtualTexture::on_dirt(std::span<const WorldRect> rects) {
+bool VirtualTexture::Impl::shows(const PageId& page, double size_m) const {
+    return shared::decal_fade(float(size_m), float(layout.texel_m(page))) > 0;
+}
+
+void VirtualTexture::on_dirt(std::span<const WorldRect> rects, double size_m) {
     Impl& t = *impl_;
     const double finest_m = t.index.map().spacing_m(0);
     for (int i = 0; i < t.pool.place_count(); ++i) {
         const PagePool::Place& place = t.pool.place(i);
         if (place.state == PagePool::State::free) continue;
+        if (!t.shows(place.page, size_m)) continue;
         // Coarser index levels filter over wider texels; one texel of that level is about two texels of the
         // page.
         const double grow_m = t.index.map().spacing_m(t.index_page(place.page).level) - finest_m;
@@ -446,7 +452,7 @@ void VirtualTexture::on_index_dirt(std::span<const WorldRect> rects) {
     std::vector<WorldRect> grown;
     for (const WorldRect& rect : rects)
         if (!rect.empty()) grown.push_back(rect.grown(reach_m));
-    on_dirt(grown);
+    on_dirt(grown, INFINITY);
 }
 
 // Texels whose ground changed, where a volume lies on it. A page of coarser texels looks at coarser samples,
@@ -456,7 +462,11 @@ void VirtualTexture::on_height_dirt(std::span<const WorldRect> rects) {
     const auto reach_m = [&](const PageId& page) {
         return ground_reach_m(t.document, t.layout.texel_m(page));
     };
-    std::vector<std::pair<WorldRect, WorldRect>> volumes;  // what changed, and the volume
+    struct Shaken {
+        WorldRect changed, volume;
+        double size_m;
+    };
+    std::vector<Shaken> volumes;
     std::vector<const Operator*> operators;
     {
         const auto lock = t.document.read_lock();
@@ -466,7 +476,7 @@ void VirtualTexture::on_height_dirt(std::span<const WorldRect> rects) {
             t.document.operators_over_texture(changed.grown(reach_m(PageId{})), operators);
             for (const Operator* op : operators)
                 if (std::holds_alternative<VolumeDecal>(op->shape))
-                    volumes.emplace_back(changed, op->texture_bounds());
+                    volumes.push_back({changed, op->texture_bounds(), op->texture_size_m()});
         }
     }
     if (volumes.empty()) return;
@@ -474,7 +484,8 @@ void VirtualTexture::on_height_dirt(std::span<const WorldRect> rects) {
         const PagePool::Place& place = t.pool.place(i);
         if (place.state == PagePool::State::free) continue;
         TexelRect dirty;
-        for (const auto& [changed, volume] : volumes) {
+        for (const auto& [changed, volume, size_m] : volumes) {
+            if (!t.shows(place.page, size_m)) continue;
             const WorldRect seen = intersected(changed.grown(reach_m(place.page)), volume);
             if (!seen.empty())
                 dirty = united(dirty, aligned_out(page_texels(t.layout, place.page, seen),

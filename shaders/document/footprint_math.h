@@ -1,8 +1,8 @@
 // A boot's print, the same in GLSL and C++.
 //
 // Inputs everywhere: `local`: position from the print's middle in units of its length, x to the right of and
-// y along the heading (footprint_local turns an offset in the world); `foot`: 0 left, 1 right. Everything but
-// footprint_sole itself (a distance) is 0 for |local| >= kFootprintReach.
+// y along the heading (footprint_local turns an offset in the world); `foot`: 0 left, 1 right. Heights
+// are 0 for |local| >= kFootprintReach.
 #ifndef LOAM_FOOTPRINT_MATH_H
 #define LOAM_FOOTPRINT_MATH_H
 #include "shaders/document/noise_math.h"
@@ -46,9 +46,10 @@ LOAM_INLINE float footprint_sole(vec2 local, int foot) {
     return footprint_join(footprint_join(heel, waist, 0.05f), footprint_join(ball, toes, 0.06f), 0.05f);
 }
 
-// Tread: 0 in the grooves, 1 under the lugs; 0 outside the sole and in the gap before the heel.
-LOAM_INLINE float footprint_tread(vec2 local, int foot) {
-    float inside = noise_ramp(0.012f, 0.03f, footprint_sole(local, foot));
+// Tread: 0 in the grooves, 1 under the lugs; 0 outside the sole and in the gap before the heel. `sole`:
+// footprint_sole there.
+LOAM_INLINE float footprint_tread(vec2 local, float sole) {
+    float inside = noise_ramp(0.012f, 0.03f, sole);
     float side = local.x < 0.0f ? -local.x : local.x;
     // Chevrons across the sole, straight bars on the heel; triangle waves of 13 and 16 a length.
     float heel = 1.0f - noise_ramp(-0.23f, -0.21f, local.y);
@@ -60,27 +61,64 @@ LOAM_INLINE float footprint_tread(vec2 local, int foot) {
     return inside * (front * noise_ramp(0.3f, 0.55f, chevron) + heel * noise_ramp(0.3f, 0.55f, bar));
 }
 
+// Height by the sole, the tread and the unevenness (-1 … 1) of a place. The rim is a bump over -kFootprintRim
+// … 0 of the signed coverage, uneven like pushed earth.
+LOAM_INLINE float footprint_profile(float sole, float tread, float unevenness) {
+    float dent = noise_ramp(0.0f, 0.06f, sole);
+    float u = -sole / kFootprintRim;
+    u = u < 0.0f ? 0.0f : (u > 1.0f ? 1.0f : u);
+    float bump = 16.0f * u * u * (1.0f - u) * (1.0f - u);
+    return bump * (0.14f + 0.06f * unevenness) - dent * (1.0f - 0.2f * (1.0f - tread));
+}
+
 // Height change in units of the print's depth: -1 under the sole, up to +0.2 on the rim, 0 from kFootprintRim
 // outside it on.
 LOAM_INLINE float footprint_height(vec2 local, int foot, uint seed) {
     float r2 = local.x * local.x + local.y * local.y;
     if (r2 >= kFootprintReach * kFootprintReach) return 0.0f;
     float sole = footprint_sole(local, foot);
-    float dent = noise_ramp(0.0f, 0.06f, sole);
-    // The rim is a bump over -kFootprintRim … 0 of the signed coverage, uneven like pushed earth.
-    float u = -sole / kFootprintRim;
-    u = u < 0.0f ? 0.0f : (u > 1.0f ? 1.0f : u);
-    float bump = 16.0f * u * u * (1.0f - u) * (1.0f - u);
-    float uneven = 0.14f + 0.06f * noise_value(local * 9.0f, noise_hash(seed + 41u));
-    return bump * uneven - dent * (1.0f - 0.2f * (1.0f - footprint_tread(local, foot)));
+    float uneven = noise_value(local * 9.0f, noise_hash(seed + 41u));
+    return footprint_profile(sole, footprint_tread(local, sole), uneven);
 }
 
-// How much the ground is pressed and darkened here, 0 … 1, for a decal.
-LOAM_INLINE float footprint_shade(vec2 local, int foot) {
-    float r2 = local.x * local.x + local.y * local.y;
-    if (r2 >= kFootprintReach * kFootprintReach) return 0.0f;
-    return noise_ramp(-0.01f, 0.02f, footprint_sole(local, foot)) *
-           (0.55f + 0.45f * footprint_tread(local, foot));
+// What a texel shows of a print: from four places around its middle, one evaluation of the sole each. Three
+// places cost a quarter less, but their slopes are twice as far from the texel's mean.
+struct FootprintMark {
+    vec2 slope;     // of footprint_height, depths a length, along local x and y
+    float pressed;  // how much the ground is pressed and darkened, 0 … 1
+    float around;   // 1 in the sole, 0 from the rim's outer edge on
+};
+
+// `reach`: of the places from the middle, in lengths. Everything is 0 outside the box of the sole and its
+// rim.
+LOAM_INLINE FootprintMark footprint_mark(vec2 local, int foot, uint seed, float reach) {
+    FootprintMark mark;
+    mark.slope = vec2(0.0f, 0.0f);
+    mark.pressed = 0.0f;
+    mark.around = 0.0f;
+    float side = local.x < 0.0f ? -local.x : local.x;
+    float along = local.y < 0.0f ? -local.y : local.y;
+    if (side > kFootprintHalfWidth || along > kFootprintHalfLength) return mark;
+    vec3 noise = noise_value_slope(local * 9.0f, noise_hash(seed + 41u));
+    for (int i = 0; i < 4; ++i) {
+        float sign = i < 2 ? 1.0f : -1.0f;
+        vec2 to = (i & 1) == 0 ? vec2(sign, 0.0f) : vec2(0.0f, sign);
+        vec2 place = vec2(local.x + reach * to.x, local.y + reach * to.y);
+        float sole = footprint_sole(place, foot);
+        float tread = footprint_tread(place, sole);
+        float uneven = noise.x + 9.0f * reach * (noise.y * to.x + noise.z * to.y);
+        uneven = uneven < -1.0f ? -1.0f : (uneven > 1.0f ? 1.0f : uneven);
+        float height = footprint_profile(sole, tread, uneven);
+        mark.slope.x += height * to.x;
+        mark.slope.y += height * to.y;
+        mark.pressed += noise_ramp(-0.01f, 0.02f, sole) * (0.55f + 0.45f * tread);
+        mark.around += noise_ramp(-kFootprintRim, 0.0f, sole);
+    }
+    mark.slope.x /= 2.0f * reach;
+    mark.slope.y /= 2.0f * reach;
+    mark.pressed *= 0.25f;
+    mark.around *= 0.25f;
+    return mark;
 }
 
 LOAM_END_SHARED

@@ -39,6 +39,28 @@ LOAM_INLINE float noise_value(vec2 p, uint seed) {
     return (low + (high - low) * v) * 2.0f - 1.0f;
 }
 
+// The same noise with its derivatives along x and y, of one evaluation: value, d/dx, d/dy.
+LOAM_INLINE vec3 noise_value_slope(vec2 p, uint seed) {
+    float fx = floor(p.x);
+    float fy = floor(p.y);
+    int ix = int(fx);
+    int iy = int(fy);
+    float s = p.x - fx;
+    float t = p.y - fy;
+    float u = s * s * s * (s * (s * 6.0f - 15.0f) + 10.0f);
+    float v = t * t * t * (t * (t * 6.0f - 15.0f) + 10.0f);
+    float du = 30.0f * s * s * (1.0f - s) * (1.0f - s);
+    float dv = 30.0f * t * t * (1.0f - t) * (1.0f - t);
+    float a = noise_share(noise_cell(ix, iy, seed));
+    float b = noise_share(noise_cell(ix + 1, iy, seed));
+    float c = noise_share(noise_cell(ix, iy + 1, seed));
+    float d = noise_share(noise_cell(ix + 1, iy + 1, seed));
+    float low = a + (b - a) * u;
+    float high = c + (d - c) * u;
+    return vec3((low + (high - low) * v) * 2.0f - 1.0f, ((b - a) * (1.0f - v) + (d - c) * v) * du * 2.0f,
+                (high - low) * dv * 2.0f);
+}
+
 // smoothstep written out, so that both sides compute the same steps.
 LOAM_INLINE float noise_ramp(float low, float high, float x) {
     float t = (x - low) / (high - low);

@@ -44,8 +44,10 @@ struct ComposeRect {
                     // the mean
     uint first_place;    // of the rectangle's layer places
     uint last_layer;     // larger indices in the map count as this one
-    uint first_unit;     // of its output: blocks, or texels of RGBA8; mip by mip, texture by texture
-    uint units;          // a texture; 0: a second mip, which is read with the rectangle it belongs to
+    ivec2 target;  // where rect_min goes in the page textures, texels; x < 0: nowhere, a second mip is read
+                   // with the rectangle it belongs to
+    uint first_block;  // of compressed output: mip by mip, texture by texture
+    uint blocks;       // a texture
 };
 
 // Work is listed in squares of 8 texels, so that a dispatch holds any number of rectangles, and those of a

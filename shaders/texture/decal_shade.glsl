@@ -67,23 +67,16 @@ DecalShade print_shade(DecalInstance decal, vec2 offset_m) {
     precise vec2 local = footprint_local(offset_m / length_m, heading);
     // Slopes over a texel, at least over a hundredth of the print: what is finer cannot be shown.
     float reach = max(decal.texel_m / length_m, 0.01) * 0.5;
-    float east = footprint_height(local + vec2(reach, 0.0), foot, decal.seed);
-    float west = footprint_height(local - vec2(reach, 0.0), foot, decal.seed);
-    float north = footprint_height(local + vec2(0.0, reach), foot, decal.seed);
-    float south = footprint_height(local - vec2(0.0, reach), foot, decal.seed);
-    precise vec2 slope_local = vec2(east - west, north - south) * (depth_m / length_m / (2.0 * reach));
+    FootprintMark mark = footprint_mark(local, foot, decal.seed, reach);
+    precise vec2 slope_local = mark.slope * (depth_m / length_m);
     vec2 slope = slope_local.x * vec2(heading.y, -heading.x) + slope_local.y * heading;
     vec2 normal = -slope / sqrt(1.0 + dot(slope, slope));
-    float r = length(local);
-    precise float sole = footprint_sole(local, foot);
-    float inside = (1.0 - noise_ramp(0.62, kFootprintReach, r)) * decal.fade;
-    float pressed = footprint_shade(local, foot);
-    float around = noise_ramp(-kFootprintRim, 0.0, sole) * inside;
+    float inside = (1.0 - noise_ramp(0.62, kFootprintReach, length(local))) * decal.fade;
 
     DecalShade shade;
-    shade.albedo = vec4(vec3(0.2, 0.18, 0.16), 0.5 * pressed * inside);
-    shade.surface = vec4(0.1, page_encode_normal(normal.x), 1.0 - 0.35 * pressed, 0.9 * around);
-    shade.metal = vec4(0.0, page_encode_normal(normal.y), 0.0, 0.9 * around);
+    shade.albedo = vec4(vec3(0.2, 0.18, 0.16), 0.5 * mark.pressed * inside);
+    shade.surface = vec4(0.1, page_encode_normal(normal.x), 1.0 - 0.35 * mark.pressed, 0.9 * mark.around * inside);
+    shade.metal = vec4(0.0, page_encode_normal(normal.y), 0.0, 0.9 * mark.around * inside);
     shade.channels = vec4(0);
     shade.channel_weight = 0.0; // pressed snow scatters as loose snow does
     return shade;

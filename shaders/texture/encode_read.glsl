@@ -1,5 +1,4 @@
-// What the two encoders share: a thread a unit (block or texel), a texture a workgroup's y, and a texel of mip kMip of a rectangle
-// of a page texture, its channels gathered from scratch (page_format.h); mip 1 is the mean of four texels, or was composed for itself.
+// What the two encoders share: a thread a unit (block or texel), and a texel of mip kMip of a rectangle of a page texture, its channels gathered from scratch (page_format.h); mip 1 is the mean of four texels, or was composed for itself.
 // Specialisation constants: 0: the mip, 30: the layout, kPageRows or kPagePairs.
 #include "shaders/texture/page_format.h"
 layout(constant_id = 0) const int kMip = 0;
@@ -14,8 +13,7 @@ struct Unit {
     ivec2 at;          // of the rectangle's mip, units
     ivec2 scratch_min;
     bool as_composed;  // scratch holds the mip's own texels there
-    bool exists;
-    uint output_index;
+    uint rect;
 };
 
 // Albedo is stored as a square root: its mip averages the square.
@@ -38,19 +36,15 @@ vec4 read_texel(Unit unit, ivec2 texel, int which) {
     return which == 0 ? vec4(own, metal.r) : vec4(own.bgr, metal.g);
 }
 
-Unit unit_of(uint thread, int log2_side, int which, int log2_unit_texels) {
+Unit unit_of(uint thread, int log2_side) {
     uint tile = tiles[thread >> (2 * log2_side)].place;
-    ComposeRect rect = rects[tile >> 10u];
     int inside = int(thread) & ((1 << (2 * log2_side)) - 1);
     Unit unit;
+    unit.rect = tile >> 10u;
     unit.at = (ivec2(tile & 31u, tile >> 5u & 31u) << log2_side) + ivec2(inside & ((1 << log2_side) - 1), inside >> log2_side);
-    bool own_mip = kMip == 1 && rect.mip_min.x >= 0;
-    unit.scratch_min = own_mip ? rect.mip_min : rect.scratch_min;
+    ivec2 mip_min = rects[unit.rect].mip_min;
+    bool own_mip = kMip == 1 && mip_min.x >= 0;
+    unit.scratch_min = own_mip ? mip_min : rects[unit.rect].scratch_min;
     unit.as_composed = kMip == 0 || own_mip;
-    unit.exists = rect.units > 0u;
-    ivec2 size = rect.rect_size >> (log2_unit_texels + kMip);
-    ivec2 mip0 = rect.rect_size >> log2_unit_texels;
-    uint before = kMip == 0 ? 0u : uint(mip0.x * mip0.y) * kMip0Units;
-    unit.output_index = rect.first_unit + uint(which) * rect.units + before + uint(unit.at.y * size.x + unit.at.x);
     return unit;
 }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 
+#include "runtime/texture/decals.h"
+#include "shaders/document/footprint_math.h"
 #include "tests/gpu/texture_ask.h"
 #include "tests/gpu/texture_world.h"
 
@@ -76,6 +78,87 @@ TEST_F(TextureTest, RandomEditsLeaveNoStaleTexelBc3) {
 }
 TEST_F(TextureTest, RandomEditsLeaveNoStaleTexelRgba8) {
     random_edits(PageFormat::rgba8, 6);
+}
+
+// Every texel that a print changes is drawn once, and hardly any other: whatever the level, the turn and the
+// rectangle that is composed.
+TEST_F(TextureTest, ThePartsOfAPrintCoverWhatItChangesOnce) {
+    World w(small_desc(PageFormat::rgba8));
+    const TextureLayout& layout = w.texture->layout();
+    int changed = 0, drawn = 0, in_bounds = 0;
+    for (int round = 0; round < 300; ++round) {
+        const int depth = 5 + round % 4;
+        PageId page{{true, 1, 1}, depth, 0, 0};
+        const WorldRect sector = layout.square(PageId{{true, 1, 1}, 0, 0, 0});
+        const Footprint print{.x_m = sector.min_x + w.fixture.real(0, 1) * sector.width(),
+                              .y_m = sector.min_y + w.fixture.real(0, 1) * sector.height(),
+                              .heading_rad = round % 7 == 0 ? 0.0 : w.fixture.real(0, 6.3),
+                              .length_m = w.fixture.real(0.1, 1.5),
+                              .foot = round % 2,
+                              .seed = uint32_t(round)};
+        page.x = int((print.x_m - sector.min_x) / layout.page_side_m(page));
+        page.y = int((print.y_m - sector.min_y) / layout.page_side_m(page));
+        w.on_dirt(w.fixture.apply(FootprintsCommand{{print}}));
+        const TexelRect rect = round % 3 == 0 ? TexelRect{64, 40, 176, 200} : TexelRect{0, 0, 256, 256};
+        DecalList list;
+        {
+            const auto lock = w.document().read_lock();
+            add_decals(w.document(), *w.layers, layout, page, rect, {rect.x0, rect.y0}, list);
+        }
+        w.fixture.apply(UndoCommand{});
+        std::vector<int> times(256 * 256);
+        for (const shared::DecalInstance& mark : list.marks)
+            for (int y = mark.quad_min.y; y < mark.quad_min.y + mark.quad_size.y; ++y)
+                for (int x = mark.quad_min.x; x < mark.quad_min.x + mark.quad_size.x; ++x) {
+                    ASSERT_TRUE(x >= rect.x0 && x < rect.x1 && y >= rect.y0 && y < rect.y1);
+                    ++times[size_t(y) * 256 + size_t(x)];
+                }
+        const WorldRect square = layout.square(page), bounds = bounds_of(print);
+        const double texel_m = layout.texel_m(page);
+        const glm::vec2 heading(std::sin(print.heading_rad), std::cos(print.heading_rad));
+        for (int y = rect.y0; y < rect.y1; ++y)
+            for (int x = rect.x0; x < rect.x1; ++x) {
+                const glm::dvec2 at(square.min_x + (x + 0.5 - kPageBorder) * texel_m,
+                                    square.min_y + (y + 0.5 - kPageBorder) * texel_m);
+                const glm::vec2 offset = (at - glm::dvec2(print.x_m, print.y_m)) / print.length_m;
+                const auto mark = shared::footprint_mark(shared::footprint_local(offset, heading), print.foot,
+                                                         print.seed, float(texel_m / print.length_m / 2));
+                const int count = times[size_t(y) * 256 + size_t(x)];
+                ASSERT_LE(count, 1);
+                ASSERT_TRUE(count == 1 || (mark.around == 0 && mark.pressed == 0)) << x << ", " << y;
+                changed += mark.around > 0;
+                drawn += count;
+                in_bounds += bounds.contains(at.x, at.y);
+            }
+    }
+    EXPECT_GT(changed, 50'000);
+    EXPECT_LT(drawn, 0.9 * in_bounds);
+}
+
+// A print of 30 cm is nothing in pages of half a metre a texel, a crater of 4 m something in most.
+TEST_F(TextureTest, PagesTooCoarseToShowADecalStayAsTheyAre) {
+    World w(small_desc(PageFormat::rgba8));
+    w.want_some_pages();
+    w.run_frames(10);
+    const auto dirtied_by = [&](const Dirt& dirt) {
+        const auto before = w.texture->statistics();
+        w.on_dirt(dirt);
+        w.run_frames(3);
+        EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
+        return w.texture->statistics().pages_dirtied - before.pages_dirtied;
+    };
+    FootprintsCommand prints;
+    prints.prints.push_back({.x_m = 64 + 20.5, .y_m = 64 + 31.5, .heading_rad = 0.7});
+    const Dirt print = w.fixture.apply(prints);
+    EXPECT_EQ(print.texture_size_m, size_m(prints.prints[0]));
+    const auto few = dirtied_by(print);
+    EXPECT_GT(few, 0u);
+    const auto undone = w.fixture.apply(UndoCommand{});
+    EXPECT_EQ(undone.texture_size_m, print.texture_size_m) << "the journal keeps it";
+    EXPECT_EQ(dirtied_by(undone), few);
+    Dirt of_no_size = print;
+    of_no_size.texture_size_m = INFINITY;
+    EXPECT_GT(dirtied_by(of_no_size), few) << "there are coarser pages, which the print left out";
 }
 
 TEST_F(TextureTest, DirtThatIsNotToldIsFound) {
@@ -260,7 +343,7 @@ TEST_F(TextureTest, Timing) {
     const double page = timed(
         [&] {
             const WorldRect rects[] = {page_square};
-            w.texture->on_dirt(rects);
+            w.texture->on_dirt(rects, INFINITY);
             one_frame();
         },
         8);

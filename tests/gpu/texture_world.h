@@ -68,7 +68,7 @@ struct World {
         index->on_dirt(dirt.index);
         if (!tell_texture) return;
         texture->on_index_dirt(dirt.index);
-        texture->on_dirt(dirt.texture);
+        texture->on_dirt(dirt.texture, dirt.texture_size_m);
     }
     void run_frames(int count) {
         for (int i = 0; i < count; ++i) {

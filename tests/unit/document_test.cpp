@@ -9,6 +9,7 @@
 #include "document_fixture.h"
 #include "index_texels.h"
 #include "runtime/base/units.h"
+#include "runtime/document/dirt.h"
 
 using namespace loam;
 using namespace loam::test;
@@ -167,6 +168,25 @@ TEST(document, dirt_covers_every_change_and_is_tight) {
     double area = 0;
     for (const WorldRect& rect : dirt.height) area += rect.width() * rect.height();
     EXPECT_LT(area, 0.6 * 266 * 166);
+}
+
+// Journals were once written without the size of decals.
+TEST(document, dirt_of_an_older_journal_is_of_any_size) {
+    Dirt dirt;
+    dirt.texture = {{1, 2, 3, 4}};
+    dirt.texture_size_m = 0.25;
+    std::vector<uint8_t> bytes = dirt_bytes(dirt);
+    auto now = dirt_of(bytes);
+    ASSERT_TRUE(now.ok()) << now.message();
+    EXPECT_EQ(now->texture_size_m, 0.25);
+    EXPECT_EQ(now->texture, dirt.texture);
+    bytes.resize(bytes.size() - sizeof(double));
+    auto older = dirt_of(bytes);
+    ASSERT_TRUE(older.ok()) << older.message();
+    EXPECT_EQ(older->texture, dirt.texture);
+    EXPECT_EQ(older->texture_size_m, INFINITY);
+    bytes.pop_back();
+    EXPECT_FALSE(dirt_of(bytes).ok());
 }
 
 TEST(document, a_command_touching_nothing_is_fine) {

@@ -84,6 +84,49 @@ TEST(crater, marks_lie_in_range_and_end) {
     EXPECT_EQ(shared::crater_zone(vec2(0, 0), 5), 1);
 }
 
+TEST(noise, slope_is_the_derivative) {
+    for (int i = 0; i < 500; ++i) {
+        const vec2 p(float(i) * 0.173f - 40.0f, float(i) * 0.091f + 3.0f);
+        const glm::vec3 n = shared::noise_value_slope(p, 7);
+        ASSERT_EQ(n.x, shared::noise_value(p, 7));
+        constexpr float kStep = 1.0f / 256;
+        const auto along = [&](vec2 d) {
+            return (shared::noise_value(p + d, 7) - shared::noise_value(p - d, 7)) / (2 * kStep);
+        };
+        ASSERT_NEAR(n.y, along({kStep, 0}), 2e-3);
+        ASSERT_NEAR(n.z, along({0, kStep}), 2e-3);
+    }
+}
+
+// A mark's slope is the heights', and nothing is left of it outside the box that is drawn.
+TEST(footprint, mark_has_the_slope_of_the_heights_and_stays_in_its_box) {
+    for (const float reach : {0.005f, 0.03f, 0.5f}) {
+        double error = 0, size = 0;
+        for (float y = -0.8f; y <= 0.8f; y += 0.007f)
+            for (float x = -0.8f; x <= 0.8f; x += 0.007f) {
+                const vec2 at(x, y);
+                const auto mark = shared::footprint_mark(at, 1, 9, reach);
+                ASSERT_TRUE(std::isfinite(mark.slope.x) && std::isfinite(mark.slope.y));
+                if (std::abs(x) > kFootprintHalfWidth || std::abs(y) > kFootprintHalfLength) {
+                    ASSERT_TRUE(mark.around == 0 && mark.pressed == 0 && mark.slope == vec2(0));
+                    continue;
+                }
+                const auto height = [&](float dx, float dy) {
+                    return shared::footprint_height(at + vec2(dx, dy), 1, 9);
+                };
+                const vec2 slope((height(reach, 0) - height(-reach, 0)) / (2 * reach),
+                                 (height(0, reach) - height(0, -reach)) / (2 * reach));
+                error += double(glm::dot(slope - mark.slope, slope - mark.slope));
+                size += double(glm::dot(slope, slope));
+            }
+        // The unevenness goes straight between the places: a texel of a whole print shows none of it.
+        EXPECT_LT(std::sqrt(error / size), reach < 0.1f ? 0.02 : 0.3) << reach;
+    }
+    const auto pressed = shared::footprint_mark(vec2(0, 0.2f), 0, 3, 0.005f);
+    EXPECT_EQ(pressed.around, 1.0f);
+    EXPECT_GT(pressed.pressed, 0.5f);
+}
+
 TEST(footprint, is_a_dent_with_a_rim_and_mirrors) {
     float low = 0, high = 0;
     for (float y = -0.8f; y <= 0.8f; y += 0.01f)
