@@ -13,6 +13,7 @@ import sys
 import tempfile
 
 import loam
+import numpy as np
 from PIL import Image
 
 
@@ -68,6 +69,26 @@ def road_picture(project, path):
     picture(project, look(project, (1958, 2268), (2004, 2345), 20, fov=60), path)
 
 
+def stamp_picture(project, folder, path):
+    """A ridge of noise, made here, laid twice: added with rock on its heights, and mirrored, turned and cut off by the ground."""
+    side = 512
+    rng = np.random.default_rng(3)
+    frequency = np.hypot(*np.meshgrid(np.fft.fftfreq(side), np.fft.fftfreq(side)))
+    frequency[0, 0] = 1
+    noise = np.fft.ifft2(np.fft.fft2(rng.normal(size=(side, side))) / frequency**1.9).real
+    y, x = np.mgrid[0:side, 0:side]
+    level = np.clip(1 - 3 * np.abs(noise) / np.abs(noise).max(), 0, 1) * np.clip(1.1 - np.hypot(x - 256, y - 256) / 256, 0, 1)
+    Image.fromarray((level / level.max() * 65535).astype(np.uint16)).save(f"{folder}/crag.png")
+    project.add_stamp(f"{folder}/crag.png")
+    project.stamp("crag", 2230, 2200, half_m=[330, 330], heading_rad=0.4, height_m=170, edge=0.3, layer="rock", layer_from=0.5)
+    project.stamp("crag", 2700, 2420, half_m=[-260, 200], heading_rad=1.2, mode="max", height_m=150, edge=0.3,
+                  base_m=float(project.height(2700, 2420)) - 30)
+    picture(project, look(project, (1900, 1450), (2400, 2300), 130, 60), path)
+    for one in project.operators():
+        if one["kind"] == "stamp":
+            project.remove_operator(one["id"])
+
+
 def main(source, out):
     os.makedirs(out, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
@@ -76,6 +97,7 @@ def main(source, out):
         with loam.open(copy) as project:
             picture(project, look(project, (2000, 1500), (2260, 3000), 150, 40), f"{out}/valley.jpg")
             picture(project, look(project, (3000, 1200), (2600, 1900), 60), f"{out}/ridge.jpg")
+            stamp_picture(project, folder, f"{out}/stamps.jpg")
             road_picture(project, f"{out}/road.jpg")
             for i, (x, y, r) in enumerate([(2040, 1905, 14), (2075, 1935, 6), (2010, 1940, 9), (2120, 1990, 22)]):
                 project.apply({"cmd": "crater", "x": x, "y": y, "radius_m": r, "seed": 3 + i})

@@ -50,6 +50,10 @@ std::string_view program(Icon icon) {
             return "M 10 2.5 L 17.5 10 10 17.5 2.5 10 10 2.5 M 6.5 10 L 10 6.5 M 8.2 12 L 12 8.2 M 10 13.5 L 13.5 10";
         case Icon::road:
             return "M 7.5 2.5 L 3 17.5 M 12.5 2.5 L 17 17.5 M 10 3 L 10 6 M 10 8.5 L 10 11.5 M 10 14 L 10 17.5";
+        case Icon::stamp:
+            return "M 3 17 L 17 17 M 3.5 13.5 L 3.5 11 8 11 8.4 8 M 16.5 13.5 L 16.5 11 12 11 11.6 8 M 3.5 "
+                   "13.5 L "
+                   "16.5 13.5 M 11.6 8 C 10 5.2 3.2 -60 240";
         case Icon::undo:
             return "M 6.5 3.5 L 3 7 6.5 10.5 M 3 7 L 12 7 C 12 11.5 4.5 -90 90 M 12 16 L 7 16";
         case Icon::redo:

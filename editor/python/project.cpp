@@ -1,4 +1,5 @@
 #include "editor/python/project.h"
+#include "editor/stamp_import.h"
 
 #include <array>
 #include <cmath>
@@ -335,6 +336,36 @@ void bind_edits(py::class_<Project>& c) {
             return apply_keywords(p, "volume", keywords);
         },
         "A volume decal at (x, y, z): half_m, direction, roll_rad, outline, layer and so on.", py::arg("at"));
+    c.def(
+        "stamp",
+        [](Project& p, const std::string& image, double x, double y, const py::kwargs& keywords) {
+            keywords["image"] = image;
+            keywords["x"] = x;
+            keywords["y"] = y;
+            return apply_keywords(p, "stamp", keywords);
+        },
+        "A stamp of the project at (x, y): half_m, heading_rad, mode (add, max, min, blend), height_m, "
+        "base_m, "
+        "strength, edge, layer, layer_from, colour.",
+        py::arg("image"), py::arg("x"), py::arg("y"));
+    c.def(
+        "add_stamp",
+        [](Project& p, const std::string& file, const std::string& name) {
+            const AddedStamp added = unwrap(add_stamp(p.session().document().folder(), file, name));
+            return to_python(Json{{"name", added.name},
+                                  {"width", added.width},
+                                  {"height", added.height},
+                                  {"colours", added.has_colors},
+                                  {"cover", added.has_cover},
+                                  {"black", added.black},
+                                  {"white", added.white},
+                                  {"notes", added.notes}});
+        },
+        "Makes a stamp of a picture's brightness; returns what it has.", py::arg("file"),
+        py::arg("name") = "");
+    c.def(
+        "stamps", [](Project& p) { return p.session().document().stamps(); },
+        "Names of the project's stamps.");
     c.def("edit_operator", &edit_operator, "Changes parameters of an operator; the rest stay.",
           py::arg("id"));
     c.def(

@@ -30,6 +30,7 @@ constexpr Bound kBound[] = {
     {"footprints", Key::digit_7, {}},
     {"decal", Key::digit_8, {}},
     {"road", Key::digit_9, {}},
+    {"stamp", Key::digit_0, {}},
     {"raise", Key::r, {}},
     {"lower", Key::l, {}},
     {"paint", Key::b, {}},
@@ -47,6 +48,7 @@ constexpr Bound kBound[] = {
     {"save", Key::s, kCtrl},
     {"export", Key::e, kCtrl},
     {"add layer", Key::l, kCtrl},
+    {"add stamp", Key::t, kCtrl},
     {"quit", Key::q, kCtrl},
     {"frame", Key::f, {}},
     {"home", Key::home, {}},
@@ -97,6 +99,11 @@ void App::run(std::string_view action, ui::Ui& ui) {
         path_text = session.document().folder().parent_path().string();
         new_layer_name.clear();
         return ui::open_dialog(ui, "Add layer");
+    }
+    if (action == "add stamp") {
+        path_text = session.document().folder().parent_path().string();
+        new_stamp_name.clear();
+        return ui::open_dialog(ui, "Add stamp");
     }
     if (action == "fill") {
         start_fill();

@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "editor/stamp_import.h"
+
 namespace loam::window {
 
 namespace {
@@ -14,7 +16,7 @@ constexpr int kHistoryLength = 400; // commands looked at
 constexpr int kMostSteps = 60;      // shown
 
 std::string_view kind_title(const OperatorShape& shape) {
-    constexpr std::string_view names[] = {"Crater", "Footprint", "Decal", "Road", "Volume decal"};
+    constexpr std::string_view names[] = {"Crater", "Footprint", "Decal", "Road", "Volume decal", "Stamp"};
     static_assert(std::size(names) == std::variant_size_v<OperatorShape>);
     return names[shape.index()];
 }
@@ -202,6 +204,8 @@ void App::read_layer_names() {
 void App::set_tool(Tool tool) {
     if (tools.stroking()) return;
     tools.tool = tool;
+    // Others may have added some since.
+    if (tool == Tool::stamp) stamp_names = session.document().stamps();
     say(fmt::format("{} tool", tool_title(tool)));
 }
 
@@ -227,6 +231,15 @@ void App::layer_added(const AddedLayer& layer) {
     say(fmt::format("Layer {} added, {} texels", layer.entry.name, layer.report.at("size_texels").get<int>()));
     for (const PackJson& warning : layer.report.at("warnings")) errors_.push_back(warning.get<std::string>());
     scene_changed();
+}
+
+void App::add_stamp(const std::filesystem::path& file, const std::string& name) {
+    const auto added = loam::add_stamp(session.document().folder(), file, name);
+    if (!added) return fail(added.message());
+    tools.settings.stamp.image = added->name;
+    set_tool(Tool::stamp);
+    say(fmt::format("Stamp {} added, {} x {} texels", added->name, added->width, added->height));
+    for (const std::string& note : added->notes) errors_.push_back(note);
 }
 
 void App::resize_brush(double factor) {

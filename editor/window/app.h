@@ -75,6 +75,7 @@ class App {
     int export_width = 1920, export_height = 1080;
     std::string new_layer_name;                // of the dialog; empty: the folder's
     double new_layer_tile_m = 2;
+    std::string new_stamp_name;  // likewise; empty: the file's
     bool quit = false;
 
     // --- edits ---
@@ -97,6 +98,9 @@ class App {
     void set_layer(int index);
     // After the session has added it: into the palette and in use, its warnings said.
     void layer_added(const AddedLayer& layer);
+    // Makes a stamp of a picture and takes it up; an error is shown.
+    void add_stamp(const std::filesystem::path& file, const std::string& name);
+    std::vector<std::string> stamp_names;  // of the project
     [[nodiscard]] int layer() const; // of the paint tool, -1: none
     void change_quality(Quality quality, PageFormat format); // of the virtual texture
     void resize_brush(double factor);

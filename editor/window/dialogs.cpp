@@ -86,6 +86,17 @@ void add_layer_dialog(App& app, ui::Ui& ui) {
                 .layer = {.pack = {.folder = app.path_text}, .name = app.new_layer_name, .tile_m = app.new_layer_tile_m}};
 }
 
+void add_stamp_dialog(App& app, ui::Ui& ui) {
+    auto dialog = ui::dialog(ui, "Add stamp", 480);
+    if (!dialog) return;
+    ui::paragraph(ui, "Any picture: its brightness is the height, its alpha where there is any of it.",
+                  ui::Tone::dim);
+    ui::text_field(ui, "File", app.path_text);
+    ui::text_field(ui, "Name", app.new_stamp_name, {.placeholder = "as the file"});
+    ui.space(8);
+    if (ui::dialog_buttons(ui, {"Cancel", "Add"}) == 1) app.add_stamp(app.path_text, app.new_stamp_name);
+}
+
 // While a fill goes on nothing else is edited: it is one step of the history. Closing the dialog takes it
 // back.
 void fill_dialog(App& app, ui::Ui& ui) {
@@ -109,6 +120,7 @@ void build_dialogs(App& app, ui::Ui& ui) {
     record_dialog(app, ui);
     export_dialog(app, ui);
     add_layer_dialog(app, ui);
+    add_stamp_dialog(app, ui);
     fill_dialog(app, ui);
     for (const std::string& text : app.take_errors()) ui.toast(text, ui.theme.error, 8);
 }

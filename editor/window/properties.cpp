@@ -1,4 +1,5 @@
 // The right panel: properties of the tool, layers, sun, history.
+#include <algorithm>
 #include <cmath>
 
 #include "editor/window/panels.h"
@@ -115,6 +116,33 @@ void road_properties(ui::Ui& ui, App& app) {
     tint_properties(ui, app.tools.settings);
 }
 
+void stamp_properties(ui::Ui& ui, App& app) {
+    StampDesc& stamp = app.tools.settings.stamp;
+    const std::vector<std::string_view> names(app.stamp_names.begin(), app.stamp_names.end());
+    if (names.empty()) {
+        ui::label(ui, "The project has no stamps", ui::Tone::dim);
+    } else {
+        int which = std::max(0, int(std::find(names.begin(), names.end(), stamp.image) - names.begin()));
+        if (which >= int(names.size())) which = 0;
+        ui::combo(ui, "Stamp", which, names);
+        stamp.image = app.stamp_names[size_t(which)];
+    }
+    if (ui::button(ui, "Add stamp…")) app.run("add stamp", ui);
+    brush_properties(ui, app.tools.brush(), true);
+    ui::slider(ui, "Stretch", stamp.stretch, {.min = 0.1, .max = 10, .decimals = 2, .logarithmic = true});
+    constexpr std::string_view kModes[] = {"Add", "Higher of both", "Lower of both", "Replace"};
+    int mode = int(stamp.mode);
+    ui::combo(ui, "Mode", mode, kModes);
+    stamp.mode = StampMode(mode);
+    ui::slider(ui, "Height", stamp.height_m,
+               {.min = -500, .max = 500, .decimals = 1, .unit = "m", .tooltip = "Of white above black"});
+    ui::checkbox(ui, "Lay the layer", stamp.lay_layer);
+    ui.push_disabled(!stamp.lay_layer);
+    share_slider(ui, "From", stamp.layer_from);
+    ui.pop_disabled();
+    ui::checkbox(ui, "Colours", stamp.colour);
+}
+
 // The whole map, or all of one layer, under the paint tool's masks.
 void fill_properties(ui::Ui& ui, App& app) {
     std::vector<std::string_view> names{"every layer"};
@@ -154,6 +182,9 @@ void tool_properties(App& app, ui::Ui& ui) {
         case Tool::footprints: gait_properties(ui, settings.gait); break;
         case Tool::decal: decal_properties(ui, app); break;
         case Tool::road: road_properties(ui, app); break;
+        case Tool::stamp:
+            stamp_properties(ui, app);
+            break;
     }
     ui.pop_id();
 }
@@ -174,7 +205,9 @@ void layer_palette(App& app, ui::Ui& ui) {
     if (ui::tile_grid(ui, "layers", tiles, selected, {.picture = 56})) {
         const size_t layer = size_t(layers[size_t(selected)]);
         app.set_layer(int(layer));
-        const bool lays = app.tools.tool == Tool::decal || app.tools.tool == Tool::road;
+        const Tool tool = app.tools.tool;
+        const bool lays = tool == Tool::decal || tool == Tool::road ||
+                          (tool == Tool::stamp && app.tools.settings.stamp.lay_layer);
         if (!lays || entries[layer].blend) app.set_tool(Tool::paint); // a transition can only be painted
     }
     if (ui::button(ui, "Add layer…")) app.run("add layer", ui);

@@ -13,6 +13,8 @@ ui::Icon tool_icon(Tool tool) {
         case Tool::footprints: return ui::Icon::footprints;
         case Tool::decal: return ui::Icon::decal;
         case Tool::road: return ui::Icon::road;
+        case Tool::stamp:
+            return ui::Icon::stamp;
     }
     return ui::Icon::none;
 }
@@ -30,6 +32,8 @@ std::string_view tool_hint(Tool tool) {
         case Tool::footprints: return "Drag to walk";
         case Tool::decal: return "Lay a piece of the chosen layer: click, or drag to turn it";
         case Tool::road: return "Click place by place, drag a place to move it. Enter, or a click on the last, ends";
+        case Tool::stamp:
+            return "Lay a picture as height: click, or drag to turn it";
     }
     return {};
 }

@@ -12,10 +12,10 @@ namespace {
 constexpr double kDragBegins_px = 5; // a click may tremble so much
 constexpr double kCoarse_m = 0.25;   // a road's outline may miss it by so much
 
-constexpr std::array<std::string_view, kToolCount> kNames = {"raise", "lower",  "smooth",    "flatten",
-                                                             "paint", "crater", "footprints", "decal", "road"};
-constexpr std::array<std::string_view, kToolCount> kTitles = {"Raise", "Lower",  "Smooth",    "Flatten",
-                                                              "Paint", "Crater", "Footprints", "Decal", "Road"};
+constexpr std::array<std::string_view, kToolCount> kNames = {
+    "raise", "lower", "smooth", "flatten", "paint", "crater", "footprints", "decal", "road", "stamp"};
+constexpr std::array<std::string_view, kToolCount> kTitles = {
+    "Raise", "Lower", "Smooth", "Flatten", "Paint", "Crater", "Footprints", "Decal", "Road", "Stamp"};
 
 SculptMode mode_of(Tool tool) {
     switch (tool) {
@@ -45,6 +45,7 @@ ToolController::ToolController(ToolQueries queries) : queries_(std::move(queries
     settings.brushes[size_t(Tool::paint)] = {.radius_m = 6, .strength = 1, .hardness = 0.7};
     settings.brushes[size_t(Tool::crater)].radius_m = 8;
     settings.brushes[size_t(Tool::decal)] = {.radius_m = 4, .strength = 1, .hardness = 0.7};
+    settings.brushes[size_t(Tool::stamp)] = {.radius_m = 40, .strength = 1, .hardness = 0.8};
     settings.brushes[size_t(Tool::road)] = {.radius_m = 3, .strength = 1, .hardness = 0.7};
 }
 
@@ -70,7 +71,7 @@ void ToolController::begin(const ToolInput& input) {
     resting_s_ = 0;
     const glm::dvec2 at(*input.ground);
     center_m_ = at;
-    target_m_ = settings.flatten_fixed ? settings.flatten_target_m : input.ground->z;
+    target_m_ = tool == Tool::flatten && settings.flatten_fixed ? settings.flatten_target_m : input.ground->z;
     if (picking_ && tool == Tool::flatten) {
         settings.flatten_target_m = input.ground->z;
         settings.flatten_fixed = true;
@@ -164,14 +165,18 @@ DecalMaterial ToolController::material() const {
 }
 
 // Turned towards the cursor; a click leaves it pointing away from the camera.
+double ToolController::heading_rad(const ToolInput& input) const {
+    if (input.ground && input.moved_px >= kDragBegins_px)
+        return std::atan2(input.ground->x - center_m_.x, input.ground->y - center_m_.y);
+    return input.camera_yaw_rad;
+}
+
 TerrainDecal ToolController::decal_at(const ToolInput& input) const {
     TerrainDecal d;
     d.x_m = center_m_.x;
     d.y_m = center_m_.y;
     d.half_m = {brush().radius_m, brush().radius_m * settings.decal.stretch};
-    d.heading_rad = input.camera_yaw_rad;
-    if (input.ground && input.moved_px >= kDragBegins_px)
-        d.heading_rad = std::atan2(input.ground->x - center_m_.x, input.ground->y - center_m_.y);
+    d.heading_rad = heading_rad(input);
     d.outline = settings.decal.ellipse ? DecalOutline::ellipse : DecalOutline::rectangle;
     d.material = material();
     d.material.rough = settings.decal.rough;
@@ -183,6 +188,31 @@ std::optional<Command> ToolController::decal(const ToolInput& input) {
     Command command{.body = AddOperatorCommand{decal_at(input)}, .group = group_};
     ++settings.seed;
     return command;
+}
+
+// What is not added to the ground stands on it, where the button went down.
+Stamp ToolController::stamp_at(const ToolInput& input) const {
+    const StampDesc& desc = settings.stamp;
+    Stamp s;
+    s.image = desc.image;
+    s.x_m = center_m_.x;
+    s.y_m = center_m_.y;
+    s.half_m = {brush().radius_m, brush().radius_m * desc.stretch};
+    s.heading_rad = heading_rad(input);
+    s.mode = desc.mode;
+    s.height_m = desc.height_m;
+    s.base_m = desc.mode == StampMode::add ? 0 : target_m_;
+    s.strength = brush().strength;
+    s.edge = 1 - brush().hardness;
+    if (desc.lay_layer) s.layer = settings.layer;
+    s.layer_from = desc.layer_from;
+    s.colour = desc.colour;
+    return s;
+}
+
+std::optional<Command> ToolController::stamp(const ToolInput& input) {
+    if (!input.released || settings.stamp.image.empty()) return {};
+    return Command{.body = AddOperatorCommand{stamp_at(input)}, .group = group_};
 }
 
 std::vector<SplinePoint> ToolController::road_points(const std::vector<glm::dvec3>& places) const {
@@ -240,6 +270,8 @@ std::vector<Command> ToolController::update(const ToolInput& input) {
         if (tool == Tool::crater) command = crater(input);
         else if (tool == Tool::footprints) command = footprints(input);
         else if (tool == Tool::decal) command = decal(input);
+        else if (tool == Tool::stamp)
+            command = stamp(input);
         else if (tool == Tool::paint) command = paint(input);
         else command = sculpt(input);
     }
@@ -250,15 +282,16 @@ std::vector<Command> ToolController::update(const ToolInput& input) {
 }
 
 std::vector<ToolController::Outline> ToolController::outlines(const ToolInput& input) const {
-    if (tool == Tool::decal && stroking_) {
-        const TerrainDecal d = decal_at(input);
-        const glm::dvec2 up(std::sin(d.heading_rad), std::cos(d.heading_rad)), right(up.y, -up.x);
+    if (places_box() && stroking_) {
+        const double heading = heading_rad(input);
+        const glm::dvec2 up(std::sin(heading), std::cos(heading)), right(up.y, -up.x);
+        const glm::dvec2 half_m = tool == Tool::stamp ? stamp_at(input).half_m : decal_at(input).half_m;
         Outline box{.places_m = {}, .closed = true};
         constexpr int kSteps = 8; // a side, so that it follows the ground
         const glm::dvec2 corners[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
         for (int side = 0; side < 4; ++side)
             for (int i = 0; i < kSteps; ++i) {
-                const glm::dvec2 at = glm::mix(corners[side], corners[side + 1], double(i) / kSteps) * d.half_m;
+                const glm::dvec2 at = glm::mix(corners[side], corners[side + 1], double(i) / kSteps) * half_m;
                 box.places_m.push_back(center_m_ + right * at.x + up * at.y);
             }
         return {box};
@@ -285,7 +318,7 @@ std::optional<ToolController::Ring> ToolController::ring(const ToolInput& input)
     const glm::dvec2 at(*input.ground);
     if (tool == Tool::crater) return Ring{stroking_ ? center_m_ : at, crater_radius_m(input), 0};
     if (tool == Tool::footprints) return Ring{at, settings.gait.length_m * 0.5, 0};
-    if (tool == Tool::decal && stroking_) return {};
+    if (places_box() && stroking_) return {};
     return Ring{at, brush().radius_m, tool == Tool::road ? 0 : brush().hardness};
 }
 

@@ -20,8 +20,8 @@
 
 namespace loam::window {
 
-enum class Tool { raise, lower, smooth, flatten, paint, crater, footprints, decal, road };
-inline constexpr int kToolCount = 9;
+enum class Tool { raise, lower, smooth, flatten, paint, crater, footprints, decal, road, stamp };
+inline constexpr int kToolCount = 10;
 [[nodiscard]] std::string_view tool_name(Tool tool);   // "raise": also the action's name
 [[nodiscard]] std::string_view tool_title(Tool tool);  // "Raise"
 
@@ -43,6 +43,16 @@ struct RoadDesc {
     double edge = 0.3; // share of the half width
 };
 
+struct StampDesc {
+    std::string image;  // of the project
+    StampMode mode = StampMode::add;
+    double height_m = 8;  // of white
+    double stretch = 1;   // length over width; the brush's radius is half the width
+    bool lay_layer = false;
+    double layer_from = 0.5;
+    bool colour = false;
+};
+
 struct ToolSettings {
     std::array<Brush, kToolCount> brushes; // a tool keeps its own
     double flatten_target_m = 0;
@@ -58,6 +68,7 @@ struct ToolSettings {
     GaitDesc gait;
     DecalDesc decal;
     RoadDesc road; // the brush's radius is half the width
+    StampDesc stamp;
 };
 
 struct ToolInput {
@@ -120,7 +131,11 @@ class ToolController {
     std::optional<Command> footprints(const ToolInput& input);
     std::optional<Command> decal(const ToolInput& input);
     std::optional<Command> road(const ToolInput& input);
+    std::optional<Command> stamp(const ToolInput& input);
+    [[nodiscard]] bool places_box() const { return tool == Tool::decal || tool == Tool::stamp; }
+    [[nodiscard]] double heading_rad(const ToolInput& input) const;  // of what is being placed
     [[nodiscard]] TerrainDecal decal_at(const ToolInput& input) const;
+    [[nodiscard]] Stamp stamp_at(const ToolInput& input) const;
     [[nodiscard]] DecalMaterial material() const;
     [[nodiscard]] std::vector<SplinePoint> road_points(const std::vector<glm::dvec3>& places) const;
     std::vector<glm::dvec2> dabs(const ToolInput& input, bool also_resting);

@@ -27,6 +27,8 @@
 //       "layer":"rock","colour":[1,1,1],"gloss":0.2,"metalness":0,"tile_m":0,"opacity":1,"edge":0.2,
 //       "rough":0,"seed":0,"channels":{"albedo":1,"normal":1,"gloss":1,"metalness":1,"occlusion":1}
 //       (ground_decal.h says what they mean); all of it may be left out
+//   {"cmd":"stamp","image":"ridge","x":0,"y":0,"half_m":[50,50],"heading_rad":0,"mode":"add","height_m":20,
+//       "base_m":0,"strength":1,"edge":0.1,"layer":"rock","layer_from":0.5,"colour":false}  (stamp.h)
 //   {"cmd":"edit","id":12,"kind":"decal", …}   replaces all parameters; kinds: crater, footprint, decal,
 //       spline, volume
 //   {"cmd":"reorder","id":12,"order":3}   evaluated in ascending order, then id; a new operator's order is

@@ -171,6 +171,18 @@ Status check(const SplineDecal& s) {
     return check(s.material);
 }
 
+Status check(const Stamp& s) {
+    LOAM_TRY(check_stamp_name(s.image));
+    LOAM_TRY(place_ok("the stamp", s.x_m, s.y_m));
+    for (int axis = 0; axis < 2; ++axis) LOAM_TRY(half_ok(s.half_m[axis], -kLargestHalf_m));
+    LOAM_TRY(in_range("heading_rad", s.heading_rad, -1000, 1000));
+    LOAM_TRY(in_range("height_m", s.height_m, -kHighest_m, kHighest_m));
+    LOAM_TRY(in_range("base_m", s.base_m, -kHighest_m, kHighest_m));
+    LOAM_TRY(in_range("strength", s.strength, 0, 1));
+    LOAM_TRY(in_range("edge", s.edge, 0, 1));
+    return in_range("layer_from", s.layer_from, 0, 1);
+}
+
 Status check(const CraterCommand& c) {
     return check(c.crater);
 }

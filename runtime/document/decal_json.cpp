@@ -76,6 +76,18 @@ DecalOutline read_outline(Fields& fields) {
     return name == "ellipse" ? DecalOutline::ellipse : DecalOutline::rectangle;
 }
 
+constexpr std::pair<const char*, StampMode> kStampModes[] = {
+    {"add", StampMode::add}, {"max", StampMode::max}, {"min", StampMode::min}, {"blend", StampMode::blend}};
+
+StampMode read_stamp_mode(Fields& fields) {
+    const Json* mode = fields.find("mode");
+    if (!mode) return StampMode::add;
+    const std::string name = fields.text_of(*mode, "mode");
+    for (const auto& [known, value] : kStampModes)
+        if (name == known) return value;
+    refuse("{}: unknown mode \"{}\" (known: add, max, min, blend)", fields.place(), name);
+}
+
 const char* name_of(DecalOutline outline) {
     return outline == DecalOutline::ellipse ? "ellipse" : "rectangle";
 }
@@ -126,6 +138,24 @@ VolumeDecal read_volume(Fields& fields) {
     return v;
 }
 
+Stamp read_stamp(Fields& fields) {
+    Stamp s;
+    s.image = fields.text("image");
+    s.x_m = fields.number("x");
+    s.y_m = fields.number("y");
+    s.half_m = read_vector(fields, "half_m", s.half_m);
+    s.heading_rad = fields.number("heading_rad", 0);
+    s.mode = read_stamp_mode(fields);
+    s.height_m = fields.number("height_m", s.height_m);
+    s.base_m = fields.number("base_m", s.base_m);
+    s.strength = fields.number("strength", s.strength);
+    s.edge = fields.number("edge", s.edge);
+    if (const Json* layer = fields.find("layer")) s.layer = fields.text_of(*layer, "layer");
+    s.layer_from = fields.number("layer_from", s.layer_from);
+    s.colour = fields.truth("colour", s.colour);
+    return s;
+}
+
 void write_decal(Json& json, const TerrainDecal& d) {
     json["x"] = d.x_m;
     json["y"] = d.y_m;
@@ -151,6 +181,23 @@ void write_volume(Json& json, const VolumeDecal& v) {
     json["roll_rad"] = v.roll_rad;
     json["outline"] = name_of(v.outline);
     write_material(json, v.material);
+}
+
+void write_stamp(Json& json, const Stamp& s) {
+    json["image"] = s.image;
+    json["x"] = s.x_m;
+    json["y"] = s.y_m;
+    json["half_m"] = vector_json(s.half_m);
+    json["heading_rad"] = s.heading_rad;
+    for (const auto& [name, mode] : kStampModes)
+        if (s.mode == mode) json["mode"] = name;
+    json["height_m"] = s.height_m;
+    json["base_m"] = s.base_m;
+    json["strength"] = s.strength;
+    json["edge"] = s.edge;
+    json["layer"] = s.layer;
+    json["layer_from"] = s.layer_from;
+    json["colour"] = s.colour;
 }
 
 }  // namespace loam

@@ -114,6 +114,7 @@ Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& fo
     impl->folder = folder;
     impl->settings = std::move(*settings);
     impl->mode = mode;
+    impl->stamps = std::make_unique<StampLibrary>(folder);
     if (mode == OpenMode::read_write) {
         auto lock = WriterLock::acquire(folder);
         if (!lock.ok()) return lock.error();
@@ -135,8 +136,11 @@ Status Document::Impl::load() {
     return pages->with_store([&](PageStore& reader) -> Status {
         LOAM_TRY(check_identity(reader, settings));
         LOAM_TRY(reader.for_each_operator([&](uint64_t id, const std::string& json) -> Status {
-            const auto op = parse_operator(id, json);
+            auto op = parse_operator(id, json);
             if (!op.ok()) return error("terrain.db: {}", op.message());
+            // What is missing may come back; nothing that is saved depends on it.
+            if (const Status given = give_picture(*op); !given)
+                log(LogLevel::warning, "operator {} shows nothing: {}", id, given.message());
             operators.set(*op);
             return {};
         }));
@@ -274,6 +278,9 @@ std::vector<Operator> Document::operators() const {
 ResolvedRoles Document::roles() const {
     const auto resolved = [&](const std::string& name) { return uint16_t(std::max(0, layer_index(name))); };
     return {resolved(impl_->settings.roles.scorched), resolved(impl_->settings.roles.broken)};
+}
+std::vector<std::string> Document::stamps() const {
+    return impl_->stamps->names();
 }
 int Document::layer_index(std::string_view name) const {
     const auto& layers = impl_->settings.layers;

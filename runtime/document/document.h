@@ -98,6 +98,7 @@ class Document {
     void operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const;
     [[nodiscard]] std::vector<Operator> operators() const;  // a copy, in order (outliner, info)
     [[nodiscard]] ResolvedRoles roles() const;
+    [[nodiscard]] std::vector<std::string> stamps() const;       // in the project's folder, sorted
     [[nodiscard]] int layer_index(std::string_view name) const;  // -1: no such layer
 
     struct Statistics {

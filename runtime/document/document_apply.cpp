@@ -107,7 +107,11 @@ Status Document::Impl::compute(const FillCommand& command, Change& change) {
 
 // `op`: its new state, or none to remove it.
 void Document::Impl::change_operator(uint64_t id, std::optional<Operator> op, Change& change) {
-    if (op) prepare(*op);
+    if (op) {
+        prepare(*op);
+        // A stamp whose picture is gone can still be moved, switched and removed.
+        (void)give_picture(*op);
+    }
     RowImage image{RowImage::Kind::op, int64_t(id), std::nullopt};
     if (op) {
         const std::string json = operator_json(*op);
@@ -130,6 +134,20 @@ void Document::Impl::change_operator(uint64_t id, std::optional<Operator> op, Ch
     change.operators[id] = std::move(op);
 }
 
+Status Document::Impl::give_picture(Operator& op) {
+    auto* stamp = std::get_if<Stamp>(&op.shape);
+    if (!stamp) return {};
+    if (!stamp->layer.empty()) {
+        const auto number = layer_number(stamp->layer);
+        if (!number.ok()) return number.error();
+        stamp->layer_number = *number;
+    }
+    auto picture = stamps->find(stamp->image);
+    if (!picture.ok()) return picture.error();
+    stamp->picture = std::move(*picture);
+    return {};
+}
+
 Status Document::Impl::known_layer(const std::string& name) const {
     std::string known;
     for (const LayerEntry& entry : settings.layers) {
@@ -140,7 +158,12 @@ Status Document::Impl::known_layer(const std::string& name) const {
     return error("unknown layer \"{}\" (known: {})", name, known.empty() ? "none" : known);
 }
 
-Status Document::Impl::known_layer(const OperatorShape& shape) const {
+Status Document::Impl::known_parts(const OperatorShape& shape) const {
+    if (const auto* stamp = std::get_if<Stamp>(&shape)) {
+        if (!stamp->layer.empty()) LOAM_TRY(known_layer(stamp->layer));
+        const auto picture = stamps->find(stamp->image);
+        return picture.ok() ? Status() : picture.error();
+    }
     const DecalMaterial* material = material_of(shape);
     if (!material || material->layer.empty()) return {};
     LOAM_TRY(known_layer(material->layer));
@@ -169,7 +192,7 @@ Status Document::Impl::compute(const FootprintsCommand& command, Change& change)
 }
 
 Status Document::Impl::compute(const AddOperatorCommand& command, Change& change) {
-    LOAM_TRY(known_layer(command.shape));
+    LOAM_TRY(known_parts(command.shape));
     const uint64_t id = change.next_operator++;
     change_operator(id, Operator{.id = id, .order = id, .enabled = true, .shape = command.shape}, change);
     return {};
@@ -178,7 +201,7 @@ Status Document::Impl::compute(const AddOperatorCommand& command, Change& change
 Status Document::Impl::compute(const EditOperatorCommand& command, Change& change) {
     const Operator* op = operators.find(command.id);
     if (!op) return error("there is no operator {}", command.id);
-    LOAM_TRY(known_layer(command.shape));
+    LOAM_TRY(known_parts(command.shape));
     Operator edited = *op;
     edited.shape = command.shape;
     change_operator(command.id, std::move(edited), change);
@@ -282,6 +305,8 @@ Status Document::Impl::write_swaps(size_t first, size_t end, bool applied, Chang
                                {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
             if (!parsed.ok()) return error("the journal: {}", parsed.message());
             op = *parsed;
+            if (const Status given = give_picture(*op); !given)
+                log(LogLevel::warning, "operator {} shows nothing: {}", image.key, given.message());
         }
         auto dirt = dirt_of(row->dirt);
         if (!dirt.ok()) return dirt.error();

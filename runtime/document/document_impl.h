@@ -46,6 +46,7 @@ struct Document::Impl {
     PageStore store;  // the writing connection; not open in a read-only document
     std::unique_ptr<BasePages> pages;
     OperatorSet operators;
+    std::unique_ptr<StampLibrary> stamps;
     std::vector<PageStore::JournalHead> heads;  // ascending; the applied ones come first
     uint64_t next_operator = 1, next_sequence = 1, next_group = 1;
     PageBalance page_count;
@@ -94,7 +95,10 @@ struct Document::Impl {
     Status compute(const RedoCommand&, Change&) { return error("redo is not a command of the journal"); }
     void change_operator(uint64_t id, std::optional<Operator> op, Change& change);
     [[nodiscard]] Status known_layer(const std::string& name) const;
-    [[nodiscard]] Status known_layer(const OperatorShape& shape) const;  // that a decal is made of
+    [[nodiscard]] Status known_parts(
+        const OperatorShape& shape) const;  // the layer and picture it is made of
+    // A stamp's picture and its layer's number; an error leaves it without.
+    Status give_picture(Operator& op);
     Status write_change(Change& change, const JournalRow& row, const PageBalance& before);
     Result<Dirt> commit_change(Change& change, const Command& command);
     // Swaps the rows of the journal heads [first, end), the direction that `applied` names, in one

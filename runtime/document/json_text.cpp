@@ -234,7 +234,9 @@ OperatorShape read_shape(const std::string& kind, Fields& fields) {
     if (kind == "decal") return read_decal(fields);
     if (kind == "spline") return read_spline(fields);
     if (kind == "volume") return read_volume(fields);
-    refuse("{}: unknown kind \"{}\" (known: crater, footprint, decal, spline, volume)", fields.place(), kind);
+    if (kind == "stamp") return read_stamp(fields);
+    refuse("{}: unknown kind \"{}\" (known: crater, footprint, decal, spline, volume, stamp)", fields.place(),
+           kind);
 }
 
 // Its kind's name; its parameters go into `json`.
@@ -263,6 +265,10 @@ struct ShapeWriter {
         write_volume(json, volume);
         return "volume";
     }
+    const char* operator()(const Stamp& stamp) const {
+        write_stamp(json, stamp);
+        return "stamp";
+    }
 };
 
 void write(Json& json, const AddOperatorCommand& c) {
@@ -285,7 +291,7 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "fill") return read_fill(fields);
     if (name == "crater") return CraterCommand{read_crater(fields)};
     if (name == "footprints") return read_footprints(fields);
-    if (name == "decal" || name == "spline" || name == "volume")
+    if (name == "decal" || name == "spline" || name == "volume" || name == "stamp")
         return AddOperatorCommand{read_shape(name, fields)};
     if (name == "edit") {
         const uint64_t id = fields.whole("id", kMaxId);
@@ -306,9 +312,7 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "redo") return RedoCommand{};
     refuse(
         "unknown command \"{}\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-        "edit, "
-        "reorder, "
-        "operator, remove, undo, redo)",
+        "stamp, edit, reorder, operator, remove, undo, redo)",
         name);
 }
 

@@ -173,6 +173,36 @@ WorldRect all_of(const std::vector<WorldRect>& rects) {
     return all;
 }
 
+WorldRect box_of(const Stamp& stamp) {
+    return turned_box(stamp.x_m, stamp.y_m, glm::abs(stamp.half_m), stamp.heading_rad);
+}
+
+void apply_crater_index(const Crater& crater, const WorldRect& rect, const ResolvedRoles& roles,
+                        const SampleGrid<IndexTexel>& texels) {
+    for_each_sample(texels, rect, crater.x_m, crater.y_m, [&](IndexTexel& texel, double dx, double dy) {
+        const vec2 local(float(dx / crater.radius_m), float(dy / crater.radius_m));
+        const int zone = shared::crater_zone(local, crater.seed);
+        if (zone != 0) texel.layer = zone == 1 ? roles.scorched : roles.broken;
+        const float factor = (1.0f - 0.62f * shared::crater_scorch(local, crater.seed)) *
+                             (1.0f - 0.3f * shared::crater_rays(local, crater.seed));
+        for (uint8_t& channel : texel.tint) channel = scaled(channel, factor);
+    });
+}
+
+// A layer has no half measures: it is laid where the stamp counts by half or more.
+void apply_stamp_index(const Stamp& stamp, const WorldRect& rect, const SampleGrid<IndexTexel>& texels) {
+    const StampSampler at(stamp);
+    for_each_sample(texels, rect, stamp.x_m, stamp.y_m, [&](IndexTexel& texel, double dx, double dy) {
+        const StampSample sample = at(dx, dy);
+        if (!stamp.layer.empty() && sample.weight >= 0.5 && sample.height >= stamp.layer_from)
+            texel.layer = stamp.layer_number;
+        for (size_t channel = 0; channel < 3; ++channel) {
+            const double factor = 1 + sample.weight * (sample.color[int(channel)] - 1);
+            texel.tint[channel] = scaled(texel.tint[channel], float(factor));
+        }
+    });
+}
+
 // What an operator does to each map, a set of overloads a kind.
 struct HeightRects {
     using Rects = std::vector<WorldRect>;
@@ -185,6 +215,7 @@ struct HeightRects {
     }
     Rects operator()(const TerrainDecal&) const { return {}; }
     Rects operator()(const VolumeDecal&) const { return {}; }
+    Rects operator()(const Stamp& s) const { return changes_heights(s) ? Rects{box_of(s)} : Rects{}; }
 };
 
 struct TextureRects {
@@ -203,6 +234,7 @@ struct TextureRects {
             glm::abs(axes.x * v.half_m.x) + glm::abs(axes.y * v.half_m.y) + glm::abs(axes.z * v.half_m.z);
         return {around(v.center_m.x, v.center_m.y, half.x, half.y)};
     }
+    Rects operator()(const Stamp&) const { return {}; }
 };
 
 struct ApplyHeight {
@@ -214,6 +246,12 @@ struct ApplyHeight {
     }
     void operator()(const TerrainDecal&) const {}
     void operator()(const VolumeDecal&) const {}
+    void operator()(const Stamp& s) const {
+        if (!changes_heights(s)) return;
+        const StampSampler at(s);
+        for_each_sample(heights_m, box_of(s), s.x_m, s.y_m,
+                        [&](double& height, double dx, double dy) { height = at.stamped_m(height, dx, dy); });
+    }
 };
 
 }  // namespace
@@ -264,6 +302,9 @@ double size_m(const SplineDecal& spline) {
 double size_m(const VolumeDecal& volume) {
     return 2 * std::min(std::abs(volume.half_m.x), std::abs(volume.half_m.y));
 }
+double size_m(const Stamp&) {
+    return 0;
+}
 
 void prepare(Operator& op) {
     if (auto* spline = std::get_if<SplineDecal>(&op.shape))
@@ -285,7 +326,8 @@ WorldRect Operator::height_bounds() const {
 WorldRect Operator::index_bounds() const {
     if (const auto* crater = std::get_if<Crater>(&shape))
         return square(crater->x_m, crater->y_m, crater->radius_m * double(kCraterMarkReach));
-    return {};
+    const auto* stamp = std::get_if<Stamp>(&shape);
+    return stamp && changes_index(*stamp) ? box_of(*stamp) : WorldRect{};
 }
 
 WorldRect Operator::texture_bounds() const {
@@ -301,17 +343,10 @@ void apply_height(const Operator& op, const SampleGrid<double>& heights_m) {
 }
 
 void apply_index(const Operator& op, const ResolvedRoles& roles, const SampleGrid<IndexTexel>& texels) {
-    const auto* crater = std::get_if<Crater>(&op.shape);
-    if (!crater) return;
-    for_each_sample(texels, op.index_bounds(), crater->x_m, crater->y_m,
-                    [&](IndexTexel& texel, double dx, double dy) {
-                        const vec2 local(float(dx / crater->radius_m), float(dy / crater->radius_m));
-                        const int zone = shared::crater_zone(local, crater->seed);
-                        if (zone != 0) texel.layer = zone == 1 ? roles.scorched : roles.broken;
-                        const float factor = (1.0f - 0.62f * shared::crater_scorch(local, crater->seed)) *
-                                             (1.0f - 0.3f * shared::crater_rays(local, crater->seed));
-                        for (uint8_t& channel : texel.tint) channel = scaled(channel, factor);
-                    });
+    if (const auto* crater = std::get_if<Crater>(&op.shape))
+        apply_crater_index(*crater, op.index_bounds(), roles, texels);
+    if (const auto* stamp = std::get_if<Stamp>(&op.shape); stamp && changes_index(*stamp))
+        apply_stamp_index(*stamp, op.index_bounds(), texels);
 }
 
 }  // namespace loam

@@ -3,6 +3,7 @@
 // Call of Duty talk, "Large Map Events", "Dynamic Decals".
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <variant>
@@ -11,6 +12,7 @@
 #include "runtime/base/rect.h"
 #include "runtime/base/result.h"
 #include "runtime/document/ground_decal.h"
+#include "runtime/document/stamp.h"
 #include "runtime/store/index_texel.h"
 
 namespace loam {
@@ -41,8 +43,9 @@ struct Footprint {
 [[nodiscard]] double size_m(const TerrainDecal& decal);
 [[nodiscard]] double size_m(const SplineDecal& spline);
 [[nodiscard]] double size_m(const VolumeDecal& volume);
+[[nodiscard]] double size_m(const Stamp& stamp);  // 0: it draws nothing
 
-using OperatorShape = std::variant<Crater, Footprint, TerrainDecal, SplineDecal, VolumeDecal>;
+using OperatorShape = std::variant<Crater, Footprint, TerrainDecal, SplineDecal, VolumeDecal, Stamp>;
 [[nodiscard]] const DecalMaterial* material_of(const OperatorShape& shape);  // null: has none
 
 struct Operator {
@@ -82,8 +85,9 @@ struct ResolvedRoles {  // LayerRoles as indices
 };
 
 // Footprints change heights and are drawn into the texture; craters change heights, layers and tint, and may
-// be drawn too; splines are drawn and may carve heights; terrain and volume decals are drawn. The mathematics
-// of craters and footprints is in shaders/document/crater_math.h and footprint_math.h, for shaders as well.
+// be drawn too; splines are drawn and may carve heights; terrain and volume decals are drawn; stamps change
+// heights, layers and tint. The mathematics of craters and footprints is in shaders/document/crater_math.h
+// and footprint_math.h, for shaders as well.
 //
 // Heights in metres. A sample's result depends on the sample's position only, never on the grid it is part
 // of: pages of every level must agree.

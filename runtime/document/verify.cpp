@@ -17,8 +17,9 @@ constexpr size_t kMostFaults = 1000;  // of a wrecked file, no more than anybody
 
 class Verifier {
   public:
-    Verifier(const ProjectSettings& settings, PageStore& store)
-        : settings_(settings),
+    Verifier(const std::filesystem::path& folder, const ProjectSettings& settings, PageStore& store)
+        : stamps_(folder),
+          settings_(settings),
           store_(store),
           height_(height_shape(settings)),
           index_(index_shape(settings)) {}
@@ -186,6 +187,13 @@ class Verifier {
             if (material && !material->layer.empty() && !has_layer(material->layer))
                 fail("operator {} is made of the layer \"{}\", which the project does not have", id,
                      material->layer);
+            if (const auto* stamp = op.ok() ? std::get_if<Stamp>(&op->shape) : nullptr) {
+                if (const auto picture = stamps_.find(stamp->image); !picture.ok())
+                    fail("operator {}: {}", id, picture.message());
+                if (!stamp->layer.empty() && !has_layer(stamp->layer))
+                    fail("operator {} lays the layer \"{}\", which the project does not have", id,
+                         stamp->layer);
+            }
             return Status();
         });
     }
@@ -240,6 +248,7 @@ class Verifier {
             return index_cache_;
     }
 
+    StampLibrary stamps_;
     const ProjectSettings& settings_;
     PageStore& store_;
     const MapShape height_, index_;
@@ -259,7 +268,7 @@ Result<std::vector<std::string>> Document::verify(const std::filesystem::path& f
     LOAM_TRY(store->begin_reading());
     const Status identity = check_identity(*store, *settings);
     if (!identity.ok()) return std::vector<std::string>{identity.message()};
-    return Verifier(*settings, *store).run();
+    return Verifier(folder, *settings, *store).run();
 }
 
 }  // namespace loam

@@ -178,6 +178,7 @@ struct PageDecals {
         paint(DecalPass::terrain, DecalKind::terrain, decal.material, quad).decal =
             paint_of(document, layers, decal, origin(0));
     }
+    void operator()(const Stamp&) const {}
     void operator()(const SplineDecal& spline) const {
         if (!shown(size_m(spline))) return;
         for (const SplinePiece& piece : spline.path->pieces()) {
@@ -245,6 +246,7 @@ struct PictureDecals {
         if (shown(size_m(volume), bounds))
             paint(kPaintVolume, paint_of(document, layers, volume, view.camera_m), bounds);
     }
+    void operator()(const Stamp&) const {}
     void operator()(const SplineDecal& spline) const {
         for (const SplinePiece& piece : spline.path->pieces()) {
             const WorldRect bounds = piece.line.grown(spline.path->half_width_m());

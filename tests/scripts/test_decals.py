@@ -8,6 +8,7 @@ import loam
 import numpy as np
 import pytest
 from conftest import run_loam
+from PIL import Image
 
 pytestmark = pytest.mark.usefixtures("has_device")
 ABOVE = (128, 128, 40, 0, -90)
@@ -30,7 +31,7 @@ def random_shape(rng, p, layers):
     x, y = rng.uniform(0, side), rng.uniform(0, side)
     if rng.random() < 0.5:  # where two of the cameras look
         x, y = rng.uniform(110, 146), rng.uniform(110, 146)
-    kind = rng.choice(("decal", "spline", "volume"))
+    kind = rng.choice(("decal", "spline", "volume", "stamp"))
     half = [rng.choice((-1, 1)) * math.exp(rng.uniform(-2, 3)) for _ in range(2)]
     material = random_material(rng, layers)
     outline = rng.choice(("rectangle", "ellipse"))
@@ -40,6 +41,11 @@ def random_shape(rng, p, layers):
         return kind, {"at": [x, y, float(p.height(x, y)) + rng.uniform(-1, 1)], "half_m": half + [rng.uniform(0.5, 9)],
                       "direction": [rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, -0.1)],
                       "roll_rad": rng.uniform(-4, 4), "outline": outline, **material}
+    if kind == "stamp":
+        return kind, {"image": rng.choice(p.stamps()), "x": x, "y": y, "half_m": half, "heading_rad": rng.uniform(-4, 4),
+                      "mode": rng.choice(("add", "max", "min", "blend")), "height_m": rng.uniform(-6, 6),
+                      "base_m": float(p.height(x, y)), "strength": rng.random(), "edge": rng.choice((0, rng.random())),
+                      "layer": rng.choice(layers + [""]), "layer_from": rng.random(), "colour": rng.random() < 0.5}
     points = [[x + rng.uniform(-40, 40), y + rng.uniform(-40, 40), rng.uniform(-3, 8), rng.uniform(0.2, 8)]
               for _ in range(rng.choice((4, 7)))]
     return kind, {"points": points, "carve": rng.choice((0, rng.random())), "shoulder_m": rng.uniform(0, 6),
@@ -73,6 +79,17 @@ def random_command(rng, p, layers):
     return {"cmd": name, **shape}
 
 
+@pytest.fixture
+def plain(plain, tmp_path):
+    """With two stamps: grey, and with colours and cover."""
+    rng = np.random.default_rng(5)
+    Image.fromarray(rng.integers(0, 256, (24, 16), np.uint8)).save(tmp_path / "grey.png")
+    Image.fromarray(rng.integers(0, 256, (9, 40, 4), np.uint8)).save(tmp_path / "colours.png")
+    for name in ("grey", "colours"):
+        assert run_loam("stamp", plain, tmp_path / f"{name}.png").returncode == 0
+    return plain
+
+
 def test_random_edits_of_every_kind_leave_no_stale_page_and_undo_to_the_start(plain):
     rng = random.Random(4)
     cameras = [(128, 60, 40, 0, -30), (128, 128, 12, 45, -60), (128, 128, 300, 0, -89), (236, 236, 5, 225, -20)]
@@ -86,7 +103,7 @@ def test_random_edits_of_every_kind_leave_no_stale_page_and_undo_to_the_start(pl
             if i % 100 == 99:
                 p.render(cameras[(i // 60) % len(cameras)], size=SIZE)
                 assert p.count_stale_pages() == 0, f"after {i + 1} commands"
-        assert {op["kind"] for op in p.operators()} >= {"decal", "spline", "volume"}
+        assert {op["kind"] for op in p.operators()} >= {"decal", "spline", "volume", "stamp"}
         while p.can_undo:
             p.undo()
         assert p.digest() == original

@@ -66,9 +66,7 @@ TEST(command, errors_are_one_sentence) {
         {R"({"cmd":5})", "a command: \"cmd\" must be a text, found number"},
         {R"({"cmd":"foo"})",
          "unknown command \"foo\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-         "edit, "
-         "reorder, "
-         "operator, remove, undo, redo)"},
+         "stamp, edit, reorder, operator, remove, undo, redo)"},
         {R"({"cmd":"undo","x":1})", "undo: unknown key \"x\" (known: cmd, group)"},
         {R"({"cmd":"sculpt","dabs":[]})", "sculpt: \"mode\" is missing"},
         {R"({"cmd":"sculpt","mode":"dig","dabs":[]})",

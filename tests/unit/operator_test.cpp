@@ -1,6 +1,7 @@
 // Operators: the shape of craters and prints, independence of the grid, the spatial index.
 #include "document_fixture.h"
 #include "runtime/document/operator_index.h"
+#include "runtime/store/stamp_file.h"
 #include "shaders/document/crater_math.h"
 #include "shaders/document/footprint_math.h"
 
@@ -157,8 +158,21 @@ TEST(footprint, is_a_dent_with_a_rim_and_mirrors) {
 }
 
 TEST(operators, change_samples_by_position_only_and_within_bounds) {
+    auto picture = std::make_shared<StampImage>();
+    picture->width = 9;
+    picture->height = 5;
+    for (uint16_t i = 0; i < 45; ++i) {
+        picture->heights.push_back(uint16_t(i * 5501));
+        for (uint16_t c = 0; c < 3; ++c) picture->colors.push_back(uint8_t(i * 37 + c));
+    }
+    Stamp stamp{.image = "any", .x_m = 101.3, .y_m = 97.9, .half_m = {11, -7}, .heading_rad = 0.6};
+    stamp.layer = "any";
+    stamp.layer_number = 3;
+    stamp.colour = true;
+    stamp.picture = picture;
     const Operator ops[] = {{1, 1, true, Crater{103.7, 98.1, 12.5, 0, 7}},
-                            {2, 2, true, Footprint{100.2, 99.4, 0.7, 2.0, 0.2, 1, 4}}};
+                            {2, 2, true, Footprint{100.2, 99.4, 0.7, 2.0, 0.2, 1, 4}},
+                            {3, 3, true, stamp}};
     const ResolvedRoles roles{1, 2};
     for (const Operator& op : ops) {
         const double spacing = 0.3;

@@ -332,3 +332,40 @@ def test_the_map_is_filled_and_taken_back(display, project, opened):
     keep("fill_undone.png", undone)
     assert all(changed_share(start, undone, spot) < 0.02 for spot in spots)
     closed_cleanly(window, display)
+
+
+def test_a_picture_becomes_a_stamp_and_is_laid(display, project, opened, tmp_path):
+    bumps = Image.new("L", (64, 64))
+    for y in range(64):
+        for x in range(64):
+            bumps.putpixel((x, y), 255 if (x // 16 + y // 16) % 2 else 0)
+    bumps.save(tmp_path / "bumps.png")
+    window = opened()
+    away(display, window)
+    start = display.screenshot()
+    display.key("0")
+    spot = place(window, 0.5, 0.7)
+    display.click(*spot)  # there is none yet: nothing happens
+    window.settle()
+    assert window.commands() == []
+    # Ctrl+T: a picture that does not exist is said, then one that does.
+    for path in (tmp_path / "nowhere.png", tmp_path / "bumps.png"):
+        display.key("ctrl+t")
+        display.xdotool("type", "--delay", 20, str(path))
+        display.key("Tab", "Tab", "Tab", "Return")
+        window.settle()
+        assert (project / "stamps" / "bumps.stamp").exists() == (path.stem == "bumps"), window.last("message")
+    display.click(*spot)
+    window.wait_for("command")
+    away(display, window)
+    stamped = display.screenshot()
+    keep("stamped.png", stamped)
+    assert changed_share(start, stamped, spot, half=30) > 0.5
+    (command,) = window.commands()
+    assert command["cmd"] == "stamp" and command["image"] == "bumps" and command["mode"] == "add"
+    display.key("ctrl+z")
+    window.settle()
+    away(display, window)
+    undone = display.screenshot()
+    assert changed_share(start, undone, spot, half=30) < 0.02
+    closed_cleanly(window, display)
