@@ -62,6 +62,7 @@ App::App(Session& opened, const ui::Theme&)
     const WorldRect bounds = session.document().bounds();
     const double side = std::max(bounds.width(), bounds.height());
     for (Brush& brush : tools.settings.brushes) brush.radius_m = std::clamp(side / 40, 2.0, 60.0);
+    tools.settings.stamp.height_m = std::clamp(side / 80, 1.0, 30.0);
     tools.settings.brushes[size_t(Tool::crater)].radius_m = std::clamp(side / 60, 2.0, 30.0);
     bind_shortcuts();
     say("Ready");
@@ -206,7 +207,9 @@ void App::set_tool(Tool tool) {
     tools.tool = tool;
     // Others may have added some since.
     if (tool == Tool::stamp) stamp_names = session.document().stamps();
-    say(fmt::format("{} tool", tool_title(tool)));
+    say(tool == Tool::stamp && stamp_names.empty()
+            ? "Stamp tool: there is no stamp yet, Ctrl+T adds a picture"
+            : fmt::format("{} tool", tool_title(tool)));
 }
 
 int App::layer() const {

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/base/check.h"
+#include "runtime/base/ramp.h"
 #include "runtime/document/spline_path.h"
 #include "shaders/document/crater_math.h"
 #include "shaders/document/footprint_math.h"
@@ -90,11 +91,6 @@ void apply_footprint_height(const Footprint& print, const WorldRect& rect,
         const vec2 local = shared::footprint_local(offset, heading);
         height += print.depth_m * double(shared::footprint_height(local, print.foot, print.seed));
     });
-}
-
-double ramp(double t) {
-    t = std::clamp(t, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
 }
 
 const SplinePath& path_of(const SplineDecal& spline) {

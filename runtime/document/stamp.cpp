@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "runtime/base/ramp.h"
 #include "runtime/store/stamp_file.h"
 
 namespace loam {
@@ -12,11 +13,6 @@ namespace {
 
 constexpr const char* kFolder = "stamps";
 constexpr const char* kSuffix = ".stamp";
-
-double ramp(double t) {
-    t = std::clamp(t, 0.0, 1.0);
-    return t * t * (3.0 - 2.0 * t);
-}
 
 // Four texels of a line and their weights, repeated at its ends.
 struct Taps {
@@ -131,7 +127,7 @@ Result<std::shared_ptr<const StampImage>> StampLibrary::find(const std::string& 
     LOAM_TRY(check_stamp_name(name));
     const std::lock_guard lock(mutex_);
     std::weak_ptr<const StampImage>& kept = loaded_[name];
-    if (auto image = kept.lock()) return image;
+    if (auto image = kept.lock()) return last_ = image;
     if (!std::filesystem::exists(file_of(name))) {
         std::string known;
         for (const std::string& other : names()) known += (known.empty() ? "" : ", ") + other;
@@ -141,7 +137,7 @@ Result<std::shared_ptr<const StampImage>> StampLibrary::find(const std::string& 
     auto loaded = load_stamp(file_of(name));
     if (!loaded.ok()) return loaded.error();
     auto image = std::make_shared<const StampImage>(std::move(*loaded));
-    kept = image;
+    kept = last_ = image;
     return image;
 }
 

@@ -90,6 +90,7 @@ class StampLibrary {
     std::filesystem::path project_;
     std::mutex mutex_;
     std::map<std::string, std::weak_ptr<const StampImage>> loaded_;
+    std::shared_ptr<const StampImage> last_;  // that nothing shows it yet does not load it again
 };
 
 }  // namespace loam
