@@ -1,9 +1,9 @@
 #include "editor/packer/pack_report.h"
 
-#include <cerrno>
 #include <cmath>
-#include <cstring>
 #include <fstream>
+
+#include "runtime/store/packed_file.h"
 
 namespace loam {
 
@@ -146,18 +146,8 @@ std::filesystem::path report_file_of(const std::filesystem::path& layer_file) {
 }
 
 Status save_pack_report(const std::filesystem::path& file, const PackJson& report) {
-    std::filesystem::path temporary = file;
-    temporary += ".new";
-    {
-        std::ofstream stream(temporary, std::ios::binary);
-        stream << report.dump(1) << "\n";
-        stream.close();
-        if (!stream) return error("cannot write {}: {}", temporary.string(), std::strerror(errno));
-    }
-    std::error_code failure;
-    std::filesystem::rename(temporary, file, failure);
-    if (failure) return error("cannot replace {}: {}", file.string(), failure.message());
-    return {};
+    const std::string text = report.dump(1) + "\n";
+    return replace_file(file, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
 }
 
 Result<PackJson> report_of_layer(const std::filesystem::path& layer_file) {

@@ -1,5 +1,8 @@
 #include "runtime/store/packed_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
@@ -10,7 +13,27 @@
 namespace loam {
 
 namespace {
+
 constexpr int kZstdLevel = 6;  // written once, read often
+
+// On the disk when it returns.
+Status write_whole(const std::filesystem::path& file, std::span<const uint8_t> bytes) {
+    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (descriptor < 0) return error("cannot write {}: {}", file.string(), std::strerror(errno));
+    size_t written = 0;
+    int failure = 0;
+    while (written < bytes.size() && failure == 0) {
+        const ssize_t step = ::write(descriptor, bytes.data() + written, bytes.size() - written);
+        if (step >= 0)
+            written += size_t(step);
+        else if (errno != EINTR)
+            failure = errno;
+    }
+    if (failure == 0 && ::fsync(descriptor) != 0) failure = errno;
+    ::close(descriptor);
+    if (failure != 0) return error("cannot write {}: {}", file.string(), std::strerror(failure));
+    return {};
+}
 }
 
 void append_u32(uint32_t value, std::vector<uint8_t>& bytes) {
@@ -41,13 +64,11 @@ Status read_part(std::span<const uint8_t>& rest, std::span<uint8_t> out) {
 Status replace_file(const std::filesystem::path& file, std::span<const uint8_t> bytes) {
     std::filesystem::path temporary = file;
     temporary += ".new";
-    {
-        std::ofstream stream(temporary, std::ios::binary);
-        stream.write(reinterpret_cast<const char*>(bytes.data()), std::streamsize(bytes.size()));
-        stream.close();
-        if (!stream) return error("cannot write {}: {}", temporary.string(), std::strerror(errno));
-    }
     std::error_code failure;
+    if (const Status written = write_whole(temporary, bytes); !written) {
+        std::filesystem::remove(temporary, failure);
+        return written;
+    }
     std::filesystem::rename(temporary, file, failure);
     if (failure) return error("cannot replace {}: {}", file.string(), failure.message());
     return {};

@@ -7,9 +7,7 @@
 #include <map>
 #include <sstream>
 
-#include <fcntl.h>
-#include <unistd.h>
-
+#include "runtime/store/packed_file.h"
 #include "runtime/store/project.h"
 
 #if defined(__GNUC__)
@@ -304,24 +302,6 @@ std::string text_of(const ProjectSettings& s) {
     return out;
 }
 
-Status write_whole(const std::filesystem::path& file, std::string_view text) {
-    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (descriptor < 0) return error("cannot write {}: {}", file.string(), std::strerror(errno));
-    size_t written = 0;
-    int failure = 0;
-    while (written < text.size() && failure == 0) {
-        const ssize_t step = ::write(descriptor, text.data() + written, text.size() - written);
-        if (step >= 0)
-            written += size_t(step);
-        else if (errno != EINTR)
-            failure = errno;
-    }
-    if (failure == 0 && ::fsync(descriptor) != 0) failure = errno;
-    ::close(descriptor);
-    if (failure != 0) return error("cannot write {}: {}", file.string(), std::strerror(failure));
-    return {};
-}
-
 }  // namespace
 
 Result<ProjectSettings> load_project(const std::filesystem::path& folder) {
@@ -350,12 +330,9 @@ Result<ProjectSettings> load_project(const std::filesystem::path& folder) {
 
 Status save_project(const std::filesystem::path& folder, const ProjectSettings& settings) {
     LOAM_TRY(check_settings(settings));
-    const std::filesystem::path file = folder / "project.toml", temporary = folder / "project.toml.new";
-    LOAM_TRY(write_whole(temporary, text_of(settings)));
-    std::error_code failure;
-    std::filesystem::rename(temporary, file, failure);
-    if (failure) return error("cannot replace {}: {}", file.string(), failure.message());
-    return {};
+    const std::string text = text_of(settings);
+    return replace_file(folder / "project.toml",
+                        {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
 }
 
 }  // namespace loam

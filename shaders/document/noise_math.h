@@ -20,26 +20,8 @@ LOAM_INLINE float noise_share(uint hash) {
     return float(hash >> 8u) * (1.0f / 16777216.0f);
 }
 
-// Value noise, cells of 1, C2, -1 … 1. |p| up to about 10^6.
-LOAM_INLINE float noise_value(vec2 p, uint seed) {
-    float fx = floor(p.x);
-    float fy = floor(p.y);
-    int ix = int(fx);
-    int iy = int(fy);
-    float u = p.x - fx;
-    float v = p.y - fy;
-    u = u * u * u * (u * (u * 6.0f - 15.0f) + 10.0f);
-    v = v * v * v * (v * (v * 6.0f - 15.0f) + 10.0f);
-    float a = noise_share(noise_cell(ix, iy, seed));
-    float b = noise_share(noise_cell(ix + 1, iy, seed));
-    float c = noise_share(noise_cell(ix, iy + 1, seed));
-    float d = noise_share(noise_cell(ix + 1, iy + 1, seed));
-    float low = a + (b - a) * u;
-    float high = c + (d - c) * u;
-    return (low + (high - low) * v) * 2.0f - 1.0f;
-}
-
-// The same noise with its derivatives along x and y, of one evaluation: value, d/dx, d/dy.
+// Value noise, cells of 1, C2, -1 … 1, and its derivatives along x and y: value, d/dx, d/dy. |p| up to about
+// 10^6.
 LOAM_INLINE vec3 noise_value_slope(vec2 p, uint seed) {
     float fx = floor(p.x);
     float fy = floor(p.y);
@@ -59,6 +41,11 @@ LOAM_INLINE vec3 noise_value_slope(vec2 p, uint seed) {
     float high = c + (d - c) * u;
     return vec3((low + (high - low) * v) * 2.0f - 1.0f, ((b - a) * (1.0f - v) + (d - c) * v) * du * 2.0f,
                 (high - low) * dv * 2.0f);
+}
+
+// The value alone: compilers leave the rest out.
+LOAM_INLINE float noise_value(vec2 p, uint seed) {
+    return noise_value_slope(p, seed).x;
 }
 
 // smoothstep written out, so that both sides compute the same steps.
