@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kZstdLevel = 6;  // written once, read often
 
-// On the disk when it returns.
+// On the disk when it returns; what was opened and could not be written is gone.
 Status write_whole(const std::filesystem::path& file, std::span<const uint8_t> bytes) {
     const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (descriptor < 0) return error("cannot write {}: {}", file.string(), std::strerror(errno));
@@ -31,10 +31,14 @@ Status write_whole(const std::filesystem::path& file, std::span<const uint8_t> b
     }
     if (failure == 0 && ::fsync(descriptor) != 0) failure = errno;
     ::close(descriptor);
-    if (failure != 0) return error("cannot write {}: {}", file.string(), std::strerror(failure));
+    if (failure != 0) {
+        ::unlink(file.c_str());  // half of it helps nobody
+        return error("cannot write {}: {}", file.string(), std::strerror(failure));
+    }
     return {};
 }
-}
+
+}  // namespace
 
 void append_u32(uint32_t value, std::vector<uint8_t>& bytes) {
     for (int i = 0; i < 4; ++i) bytes.push_back(uint8_t(value >> (8 * i)));
@@ -64,11 +68,8 @@ Status read_part(std::span<const uint8_t>& rest, std::span<uint8_t> out) {
 Status replace_file(const std::filesystem::path& file, std::span<const uint8_t> bytes) {
     std::filesystem::path temporary = file;
     temporary += ".new";
+    LOAM_TRY(write_whole(temporary, bytes));
     std::error_code failure;
-    if (const Status written = write_whole(temporary, bytes); !written) {
-        std::filesystem::remove(temporary, failure);
-        return written;
-    }
     std::filesystem::rename(temporary, file, failure);
     if (failure) return error("cannot replace {}: {}", file.string(), failure.message());
     return {};
