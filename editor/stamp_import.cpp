@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "editor/image_file.h"
-#include "runtime/document/stamp.h"
+#include "runtime/document/stamp_library.h"
 #include "runtime/store/project.h"
 #include "runtime/store/stamp_file.h"
 
@@ -12,7 +12,7 @@ namespace loam {
 
 namespace {
 
-constexpr int kMaxSide = 32768;  // of a picture
+constexpr int kMaxSide = 16384;  // of a picture
 
 // The numbers that become 0 and 1. Infinite ones are mended first.
 std::pair<double, double> range_of(const SampleImage& image) {
@@ -77,7 +77,10 @@ StampImage stamp_of(const SampleImage& image, double black, double white, AddedS
     stamp.heights.resize(texels);
     if (out.has_colors) stamp.colors.resize(3 * texels);
     if (has_alpha) stamp.cover.resize(texels);
-    const double alpha_white = image.kind == SampleKind::floating ? 1.0 : white;
+    const double alpha_white = image.kind == SampleKind::unsigned_8    ? 255
+                               : image.kind == SampleKind::unsigned_16 ? 65535
+                               : image.kind == SampleKind::signed_16   ? 32767
+                                                                       : 1;
     const auto share = [&](float sample) {
         return std::clamp((double(sample) - black) / (white - black), 0.0, 1.0);
     };
@@ -119,7 +122,7 @@ Result<AddedStamp> add_stamp(const std::filesystem::path& project, const std::fi
             fmt::format("{} numbers were not finite: set to the least of the others", mended));
     const glm::ivec2 size(image->width, image->height);
     while (image->width > kMaxStampTexels || image->height > kMaxStampTexels) halve(*image);
-    if (image->width != size.x)
+    if (glm::ivec2(image->width, image->height) != size)
         added.notes.push_back(fmt::format("{} x {} texels made {} x {}: a stamp has at most {} a side",
                                           size.x, size.y, image->width, image->height, kMaxStampTexels));
     std::tie(added.black, added.white) = range_of(*image);

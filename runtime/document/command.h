@@ -30,7 +30,7 @@
 //   {"cmd":"stamp","image":"ridge","x":0,"y":0,"half_m":[50,50],"heading_rad":0,"mode":"add","height_m":20,
 //       "base_m":0,"strength":1,"edge":0.1,"layer":"rock","layer_from":0.5,"colour":false}  (stamp.h)
 //   {"cmd":"edit","id":12,"kind":"decal", …}   replaces all parameters; kinds: crater, footprint, decal,
-//       spline, volume
+//       spline, volume, stamp
 //   {"cmd":"reorder","id":12,"order":3}   evaluated in ascending order, then id; a new operator's order is
 //   its id
 //   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}

@@ -5,6 +5,7 @@
 
 #include "runtime/base/units.h"
 #include "runtime/document/command.h"
+#include "runtime/document/stamp_library.h"
 
 namespace loam {
 

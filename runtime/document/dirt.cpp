@@ -96,7 +96,8 @@ Result<Dirt> dirt_of(std::span<const uint8_t> bytes) {
     }
     // Journals were once written without it.
     dirt.texture_size_m = reader.at_end() ? INFINITY : reader.real();
-    if (!reader.at_end()) return error("damaged rectangles of a command in the journal");
+    if (!reader.at_end() || std::isnan(dirt.texture_size_m))
+        return error("damaged rectangles of a command in the journal");
     return dirt;
 }
 

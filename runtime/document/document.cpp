@@ -135,15 +135,19 @@ Status Document::Impl::load() {
     index = index_shape(settings);
     return pages->with_store([&](PageStore& reader) -> Status {
         LOAM_TRY(check_identity(reader, settings));
+        size_t without_picture = 0;
+        std::string missing;  // of the first
         LOAM_TRY(reader.for_each_operator([&](uint64_t id, const std::string& json) -> Status {
             auto op = parse_operator(id, json);
             if (!op.ok()) return error("terrain.db: {}", op.message());
             // What is missing may come back; nothing that is saved depends on it.
-            if (const Status given = give_picture(*op); !given)
-                log(LogLevel::warning, "operator {} shows nothing: {}", id, given.message());
+            if (const Status given = give_picture(*op); !given && without_picture++ == 0)
+                missing = given.message();
             operators.set(*op);
             return {};
         }));
+        if (without_picture > 0)
+            log(LogLevel::warning, "stamps that show nothing: {}; {}", without_picture, missing);
         auto journal = reader.journal_heads();
         if (!journal.ok()) return journal.error();
         heads = std::move(*journal);

@@ -19,6 +19,7 @@
 #include "runtime/document/operator_set.h"
 #include "runtime/document/page_edits.h"
 #include "runtime/document/paint.h"
+#include "runtime/document/stamp_library.h"
 #include "runtime/store/page_store.h"
 #include "runtime/store/writer_lock.h"
 

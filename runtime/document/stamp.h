@@ -1,21 +1,14 @@
 // Stamps: a picture laid on the ground as height, material and colour, at any place, turn and scale, as often
-// as wanted and moved later like any other operator. Heights are evaluated where they are
-// sampled; material and colour go through the index map, at its spacing. Source: Leadwerks, "Virtual Texture
-// Terrain", stamps.
+// as wanted and moved later like any other operator. Heights are evaluated where they are sampled; material
+// and colour go through the index map, at its spacing. Source: Leadwerks, "Virtual Texture Terrain", stamps.
 #pragma once
 
-#include <filesystem>
-#include <map>
+#include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <vector>
 
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
-
-#include "runtime/base/rect.h"
-#include "runtime/base/result.h"
 
 namespace loam {
 
@@ -41,7 +34,7 @@ struct Stamp {
     std::string layer;        // laid where the picture is at least layer_from; empty: none
     double layer_from = 0.5;  // 0 … 1
     bool colour = false;      // the picture's colours multiply the tint
-    // Set by StampLibrary::give. Without a picture a stamp does nothing.
+    // Set by the document. Without a picture a stamp does nothing.
     std::shared_ptr<const StampImage> picture;
     uint16_t layer_number = 0;
     bool operator==(const Stamp& o) const {
@@ -72,25 +65,5 @@ class StampSampler {
 };
 [[nodiscard]] bool changes_heights(const Stamp& stamp);
 [[nodiscard]] bool changes_index(const Stamp& stamp);
-
-// A file's name of letters, digits, spaces, and . _ - inside: nothing that could leave the folder.
-[[nodiscard]] Status check_stamp_name(const std::string& name);
-
-// The stamps of a project's folder. Pictures are loaded when first asked for and kept while a stamp shows
-// them.
-class StampLibrary {
-  public:
-    explicit StampLibrary(std::filesystem::path project) : project_(std::move(project)) {}
-    [[nodiscard]] std::filesystem::path file_of(const std::string& name) const;
-    [[nodiscard]] std::vector<std::string> names() const;  // sorted
-    // The error names the stamps there are.
-    [[nodiscard]] Result<std::shared_ptr<const StampImage>> find(const std::string& name);
-
-  private:
-    std::filesystem::path project_;
-    std::mutex mutex_;
-    std::map<std::string, std::weak_ptr<const StampImage>> loaded_;
-    std::shared_ptr<const StampImage> last_;  // that nothing shows it yet does not load it again
-};
 
 }  // namespace loam

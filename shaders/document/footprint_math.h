@@ -81,8 +81,8 @@ LOAM_INLINE float footprint_height(vec2 local, int foot, uint seed) {
     return footprint_profile(sole, footprint_tread(local, sole), uneven);
 }
 
-// What a texel shows of a print: from four places around its middle, one evaluation of the sole each. Three
-// places cost a quarter less, but their slopes are twice as far from the texel's mean.
+// What a texel shows of a print: from four places around its middle, one evaluation of the sole each. Of
+// three places the slopes would be twice as far from the texel's mean.
 struct FootprintMark {
     vec2 slope;     // of footprint_height, depths a length, along local x and y
     float pressed;  // how much the ground is pressed and darkened, 0 … 1

@@ -1,4 +1,5 @@
-// What the two encoders share: a thread a unit (block or texel), and a texel of mip kMip of a rectangle of a page texture, its channels gathered from scratch (page_format.h); mip 1 is the mean of four texels, or was composed for itself.
+// What the two encoders share: a thread a unit (block or texel), and a texel of mip kMip of a rectangle of a page texture,
+// its channels gathered from scratch (page_format.h); mip 1 is the mean of four texels, or was composed for itself.
 // Specialisation constants: 0: the mip, 30: the layout, kPageRows or kPagePairs.
 #include "shaders/texture/page_format.h"
 layout(constant_id = 0) const int kMip = 0;

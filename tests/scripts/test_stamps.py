@@ -107,6 +107,7 @@ def test_pictures_that_are_odd(plain, tmp_path):
     floats[2, 2] = np.nan
     Image.fromarray(floats).save(tmp_path / "floats.tif")
     Image.fromarray(np.zeros((2, 9000), np.uint8)).save(tmp_path / "wide.png")
+    Image.fromarray(np.zeros((9000, 1), np.uint8)).save(tmp_path / "tall.png")
     Image.new("L", (1, 1), 128).save(tmp_path / "dot.png")
     (tmp_path / "text.png").write_text("not a picture")
     with loam.open(str(plain)) as p:
@@ -115,6 +116,7 @@ def test_pictures_that_are_odd(plain, tmp_path):
         wide = p.add_stamp(str(tmp_path / "wide.png"))
         assert (wide["width"], wide["height"]) == (2250, 1)
         assert "4096" in wide["notes"][0] and "no relief" in wide["notes"][1]
+        assert "1 x 9000 texels made 1 x 2250" in p.add_stamp(str(tmp_path / "tall.png"))["notes"][0]
         ground = float(p.height(128, 128))
         p.add_stamp(str(tmp_path / "dot.png"))
         p.stamp("dot", 128, 128, half_m=[10, 10], height_m=10, edge=0)

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/document/operator.h"
+#include "runtime/document/stamp_library.h"
 #include "runtime/store/packed_file.h"
 #include "runtime/store/stamp_file.h"
 
