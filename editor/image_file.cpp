@@ -5,6 +5,8 @@
 #include <cctype>
 #include <fstream>
 #include <memory>
+#include <optional>
+#include <type_traits>
 
 #include <OpenImageIO/imageio.h>
 
@@ -150,22 +152,55 @@ bool is_inks(const OIIO::ImageSpec& spec) {
     return false;
 }
 
-Result<SampleImage> read_with_oiio(const std::filesystem::path& file, int max_side, KeptChannels keep) {
+// A flat picture of numbers that are kept as they are.
+Result<std::unique_ptr<OIIO::ImageInput>> open_with_oiio(const std::filesystem::path& file) {
     OIIO::ImageSpec hints;
     hints.attribute("oiio:UnassociatedAlpha", 1);  // leave the samples alone
     auto input = OIIO::ImageInput::open(file.string(), &hints);
     if (!input)
         return error("{} is not a picture that can be read: {}", file.string(), one_line(OIIO::geterror()));
-    const OIIO::ImageSpec spec = input->spec();
+    const OIIO::ImageSpec& spec = input->spec();
     if (spec.width < 1 || spec.height < 1 || spec.depth > 1 || spec.nchannels < 1)
         return error("{} has {}x{}x{} pixels of {} channels, expected a flat picture", file.string(),
                      spec.width, spec.height, spec.depth, spec.nchannels);
-    if (spec.width > max_side || spec.height > max_side)
-        return error("{} is too large: {}x{} samples, at most {} a side", file.string(), spec.width,
-                     spec.height, max_side);
     if (is_inks(spec))
         return error("{} is made of inks (CMYK), expected grey or red, green and blue: convert it first",
                      file.string());
+    return input;
+}
+
+std::optional<SampleKind> kind_of(const OIIO::ImageSpec& spec) {
+    switch (spec.format.basetype) {
+        case OIIO::TypeDesc::UINT8:
+            return SampleKind::unsigned_8;
+        case OIIO::TypeDesc::UINT16:
+            return SampleKind::unsigned_16;
+        case OIIO::TypeDesc::INT16:
+            return SampleKind::signed_16;
+        case OIIO::TypeDesc::HALF:
+        case OIIO::TypeDesc::FLOAT:
+        case OIIO::TypeDesc::DOUBLE:
+            return SampleKind::floating;
+        default:
+            return {};
+    }
+}
+
+Error unknown_samples(const std::filesystem::path& file, const OIIO::ImageSpec& spec) {
+    return error("{} has samples of type {}, expected 8 or 16-bit integers or floats", file.string(),
+                 spec.format.c_str());
+}
+
+Result<SampleImage> read_with_oiio(const std::filesystem::path& file, int max_side, KeptChannels keep) {
+    auto opened = open_with_oiio(file);
+    if (!opened.ok()) return opened.error();
+    auto& input = *opened;
+    const OIIO::ImageSpec spec = input->spec();
+    if (spec.width > max_side || spec.height > max_side)
+        return error("{} is too large: {}x{} samples, at most {} a side", file.string(), spec.width,
+                     spec.height, max_side);
+    const auto kind = kind_of(spec);
+    if (!kind) return unknown_samples(file, spec);
 
     SampleImage out;
     out.width = spec.width;
@@ -176,30 +211,22 @@ Result<SampleImage> read_with_oiio(const std::filesystem::path& file, int max_si
     if (keep == KeptChannels::up_to_four) out.kept_channel_count = std::min(4, spec.nchannels);
     out.samples.resize(static_cast<size_t>(spec.width) * static_cast<size_t>(spec.height) *
                        static_cast<size_t>(out.kept_channel_count));
+    out.kind = *kind;
+    out.was_double = spec.format.basetype == OIIO::TypeDesc::DOUBLE;
     bool ok = false;
-    switch (spec.format.basetype) {
-        case OIIO::TypeDesc::UINT8:
-            out.kind = SampleKind::unsigned_8;
+    switch (out.kind) {
+        case SampleKind::unsigned_8:
             ok = read_as<uint8_t>(*input, spec, OIIO::TypeDesc::UINT8, out);
             break;
-        case OIIO::TypeDesc::UINT16:
-            out.kind = SampleKind::unsigned_16;
+        case SampleKind::unsigned_16:
             ok = read_as<uint16_t>(*input, spec, OIIO::TypeDesc::UINT16, out);
             break;
-        case OIIO::TypeDesc::INT16:
-            out.kind = SampleKind::signed_16;
+        case SampleKind::signed_16:
             ok = read_as<int16_t>(*input, spec, OIIO::TypeDesc::INT16, out);
             break;
-        case OIIO::TypeDesc::HALF:
-        case OIIO::TypeDesc::FLOAT:
-        case OIIO::TypeDesc::DOUBLE:
-            out.kind = SampleKind::floating;
-            out.was_double = spec.format.basetype == OIIO::TypeDesc::DOUBLE;
+        case SampleKind::floating:
             ok = read_as<float>(*input, spec, OIIO::TypeDesc::FLOAT, out);
             break;
-        default:
-            return error("{} has samples of type {}, expected 8 or 16-bit integers or floats", file.string(),
-                         spec.format.c_str());
     }
     const std::string reason = input->geterror();
     if (!ok || !reason.empty())
@@ -263,6 +290,116 @@ Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side
     } catch (const std::exception& exception) {
         return error("{} cannot be read: {}", file.string(), one_line(exception.what()));
     }
+}
+
+struct ImageRows::Impl {
+    std::filesystem::path file;
+    std::unique_ptr<OIIO::ImageInput> input;
+    OIIO::ImageSpec spec;
+    SampleKind kind{};
+    std::string color_space;
+    int next = 0, held_from = 0, held_to = 0;  // rows from the top
+    std::vector<float> held;
+    std::vector<uint16_t> integers;
+    std::vector<int16_t> signed_integers;
+
+    // OpenImageIO would scale integers to 0 … 1.
+    template <typename T>
+    bool read_block(OIIO::TypeDesc type, std::vector<T>& block) {
+        block.resize(held.size());
+        const bool ok =
+            spec.tile_width > 0
+                ? input->read_tiles(0, 0, spec.x, spec.x + spec.width, spec.y + held_from, spec.y + held_to,
+                                    spec.z, spec.z + 1, 0, spec.nchannels, type, block.data())
+                : input->read_scanlines(0, 0, spec.y + held_from, spec.y + held_to, spec.z, 0, spec.nchannels,
+                                        type, block.data());
+        if constexpr (!std::is_same_v<T, float>) std::copy(block.begin(), block.end(), held.begin());
+        return ok;
+    }
+    Status load_block() {
+        const int rows = spec.tile_width > 0 ? std::max(spec.tile_height, 1) : 16;
+        held_from = next;
+        held_to = std::min(spec.height, held_from + rows);
+        held.resize(size_t(spec.width) * size_t(held_to - held_from) * size_t(spec.nchannels));
+        bool ok = false;
+        switch (kind) {
+            case SampleKind::unsigned_8: {
+                std::vector<uint8_t> bytes;
+                ok = read_block(OIIO::TypeDesc::UINT8, bytes);
+                break;
+            }
+            case SampleKind::unsigned_16:
+                ok = read_block(OIIO::TypeDesc::UINT16, integers);
+                break;
+            case SampleKind::signed_16:
+                ok = read_block(OIIO::TypeDesc::INT16, signed_integers);
+                break;
+            case SampleKind::floating:
+                ok = read_block(OIIO::TypeDesc::FLOAT, held);
+                break;
+        }
+        const std::string reason = input->geterror();
+        if (!ok || !reason.empty())
+            return error("{} is damaged or cut short: {}", file.string(), one_line(reason));
+        return {};
+    }
+};
+
+ImageRows::ImageRows() : impl_(std::make_unique<Impl>()) {}
+ImageRows::~ImageRows() = default;
+
+Result<std::unique_ptr<ImageRows>> ImageRows::open(const std::filesystem::path& file) {
+    LOAM_TRY(check_readable(file));
+    LOAM_TRY(check_png_chunks(file));
+    LOAM_TRY(check_jpeg_end(file));
+    try {
+        auto input = open_with_oiio(file);
+        if (!input.ok()) return input.error();
+        std::unique_ptr<ImageRows> rows(new ImageRows);
+        Impl& r = *rows->impl_;
+        r.file = file;
+        r.input = std::move(*input);
+        r.spec = r.input->spec();
+        const auto kind = kind_of(r.spec);
+        if (!kind) return unknown_samples(file, r.spec);
+        r.kind = *kind;
+        r.color_space = r.spec.get_string_attribute("oiio:ColorSpace");
+        return rows;
+    } catch (const std::exception& exception) {
+        return error("{} cannot be read: {}", file.string(), one_line(exception.what()));
+    }
+}
+
+int ImageRows::width() const {
+    return impl_->spec.width;
+}
+int ImageRows::height() const {
+    return impl_->spec.height;
+}
+int ImageRows::channel_count() const {
+    return impl_->spec.nchannels;
+}
+int ImageRows::alpha_channel() const {
+    return impl_->spec.alpha_channel;
+}
+SampleKind ImageRows::kind() const {
+    return impl_->kind;
+}
+const std::string& ImageRows::color_space() const {
+    return impl_->color_space;
+}
+
+Result<std::span<const float>> ImageRows::next() {
+    Impl& r = *impl_;
+    if (r.next >= r.held_to) {
+        try {
+            LOAM_TRY(r.load_block());
+        } catch (const std::exception& exception) {
+            return error("{} cannot be read: {}", r.file.string(), one_line(exception.what()));
+        }
+    }
+    const size_t row = size_t(r.spec.width) * size_t(r.spec.nchannels);
+    return std::span<const float>(r.held).subspan(size_t(r.next++ - r.held_from) * row, row);
 }
 
 Result<RgbaImage> read_rgba8(const std::filesystem::path& file, int max_side) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -34,6 +35,28 @@ struct SampleImage {
 // `max_side` pixels a side.
 [[nodiscard]] Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side,
                                                KeptChannels keep = KeptChannels::first);
+
+// A picture's rows from the top (north), a few of them in memory at a time, so that pictures may have any
+// size.
+class ImageRows {
+  public:
+    // Refuses what read_samples refuses, but for the size.
+    [[nodiscard]] static Result<std::unique_ptr<ImageRows>> open(const std::filesystem::path& file);
+    ~ImageRows();
+    [[nodiscard]] int width() const;
+    [[nodiscard]] int height() const;
+    [[nodiscard]] int channel_count() const;  // of the file and of a row, interleaved
+    [[nodiscard]] int alpha_channel() const;  // -1: none
+    [[nodiscard]] SampleKind kind() const;
+    [[nodiscard]] const std::string& color_space() const;
+    // The next row, integers with their values; valid until the next call.
+    [[nodiscard]] Result<std::span<const float>> next();
+
+  private:
+    ImageRows();
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
 
 // Eight bits a channel as in the file, no colour conversion; grey is repeated, missing alpha is 255.
 struct RgbaImage {

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "runtime/base/check.h"
+#include "runtime/base/srgb.h"
 
 namespace loam {
 
@@ -24,24 +25,6 @@ double luma(const Picture& p, int x, int y) {
 
 }  // namespace
 
-float linear_from_srgb8(uint8_t value) {
-    static const std::array<float, 256> table = [] {
-        std::array<float, 256> t{};
-        for (size_t i = 0; i < t.size(); ++i) {
-            const double s = static_cast<double>(i) / 255.0;
-            t[i] = static_cast<float>(s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4));
-        }
-        return t;
-    }();
-    return table[value];
-}
-
-uint8_t srgb8_from_linear(float value) {
-    const double l = std::min(1.0, std::max(0.0, static_cast<double>(value)));
-    const double s = l <= 0.0031308 ? l * 12.92 : 1.055 * std::pow(l, 1.0 / 2.4) - 0.055;
-    return static_cast<uint8_t>(std::lround(s * 255.0));
-}
-
 void LinearAverage::add(const Picture& picture) {
     const size_t pixels = static_cast<size_t>(picture.width) * static_cast<size_t>(picture.height);
     if (count_ == 0) {
@@ -51,7 +34,7 @@ void LinearAverage::add(const Picture& picture) {
     }
     LOAM_CHECK(width_ == picture.width && height_ == picture.height, "pictures of one size are averaged");
     for (size_t i = 0; i < pixels; ++i)
-        for (size_t c = 0; c < 3; ++c) sum_[i * 3 + c] += linear_from_srgb8(picture.rgba[i * 4 + c]);
+        for (size_t c = 0; c < 3; ++c) sum_[i * 3 + c] += float(linear_of_srgb8(picture.rgba[i * 4 + c]));
     ++count_;
 }
 
@@ -60,7 +43,7 @@ Picture LinearAverage::picture() const {
     Picture out{width_, height_, std::vector<uint8_t>(sum_.size() / 3 * 4, 255)};
     const float share = 1.0f / static_cast<float>(count_);
     for (size_t i = 0; i < sum_.size() / 3; ++i)
-        for (size_t c = 0; c < 3; ++c) out.rgba[i * 4 + c] = srgb8_from_linear(sum_[i * 3 + c] * share);
+        for (size_t c = 0; c < 3; ++c) out.rgba[i * 4 + c] = srgb8_of_linear(sum_[i * 3 + c] * share);
     return out;
 }
 

@@ -7,9 +7,6 @@
 
 namespace loam {
 
-[[nodiscard]] float linear_from_srgb8(uint8_t value);
-[[nodiscard]] uint8_t srgb8_from_linear(float value);
-
 // Mean of pictures of one size, in linear light.
 class LinearAverage {
   public:

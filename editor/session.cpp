@@ -146,6 +146,13 @@ Result<AddedLayer> Session::add_layer(const AddLayerRequest& request, const Prog
     return added;
 }
 
+Result<AddedImagery> Session::add_imagery(const AddImageryRequest& request, const Progress& progress) {
+    auto added = loam::add_imagery(*document_, request, progress);
+    if (!added) return added;
+    if (renderer_) LOAM_TRY(renderer_->settings_changed(*ring_));
+    return added;
+}
+
 Status Session::record_to(const std::filesystem::path& file) {
     auto recorder = std::make_unique<Recorder>();
     recorder->path = file;

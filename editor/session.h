@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "editor/imagery_import.h"
 #include "editor/layer_import.h"
 #include "runtime/base/result.h"
 #include "runtime/document/document.h"
@@ -80,6 +81,8 @@ class Session {
     Status change_settings(const ProjectSettings& settings);
     // The layer can be painted with, and is drawn, once this returns; a renderer loads the layers again.
     Result<AddedLayer> add_layer(const AddLayerRequest& request, const Progress& progress);
+    // The same for imagery over the map.
+    Result<AddedImagery> add_imagery(const AddImageryRequest& request, const Progress& progress);
     // Every command from now on is appended to this file, one JSON line each.
     Status record_to(const std::filesystem::path& file);
 

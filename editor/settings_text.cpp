@@ -9,19 +9,22 @@ namespace {
 struct Entry {
     const char* name;
     double* (*number)(ProjectSettings&);
-    bool* (*flag)(ProjectSettings&);
+    bool* (*flag)(ProjectSettings&) = nullptr;
+    std::string* (*text)(ProjectSettings&) = nullptr;
 };
 
 constexpr Entry kEntries[] = {
-    {"sun.azimuth_rad", [](ProjectSettings& s) { return &s.sun_azimuth_rad; }, nullptr},
-    {"sun.elevation_rad", [](ProjectSettings& s) { return &s.sun_elevation_rad; }, nullptr},
-    {"air.haze_per_km", [](ProjectSettings& s) { return &s.haze_per_km; }, nullptr},
-    {"ground.distortion_amplitude_m", [](ProjectSettings& s) { return &s.ground.distortion_amplitude_m; },
-     nullptr},
-    {"ground.distortion_period_m", [](ProjectSettings& s) { return &s.ground.distortion_period_m; }, nullptr},
+    {"sun.azimuth_rad", [](ProjectSettings& s) { return &s.sun_azimuth_rad; }},
+    {"sun.elevation_rad", [](ProjectSettings& s) { return &s.sun_elevation_rad; }},
+    {"air.haze_per_km", [](ProjectSettings& s) { return &s.haze_per_km; }},
+    {"ground.distortion_amplitude_m", [](ProjectSettings& s) { return &s.ground.distortion_amplitude_m; }},
+    {"ground.distortion_period_m", [](ProjectSettings& s) { return &s.ground.distortion_period_m; }},
     {"ground.tile_hiding", nullptr, [](ProjectSettings& s) { return &s.ground.tile_hiding; }},
-    {"ground.vista_scale", [](ProjectSettings& s) { return &s.ground.vista_scale; }, nullptr},
-    {"ground.vista_distance_m", [](ProjectSettings& s) { return &s.ground.vista_distance_m; }, nullptr},
+    {"ground.vista_scale", [](ProjectSettings& s) { return &s.ground.vista_scale; }},
+    {"ground.vista_distance_m", [](ProjectSettings& s) { return &s.ground.vista_distance_m; }},
+    {"imagery.file", nullptr, nullptr, [](ProjectSettings& s) { return &s.imagery.file; }},
+    {"imagery.strength", [](ProjectSettings& s) { return &s.imagery.strength; }},
+    {"imagery.distance_m", [](ProjectSettings& s) { return &s.imagery.distance_m; }},
 };
 
 }  // namespace
@@ -31,7 +34,8 @@ std::vector<NamedSetting> named_settings(const ProjectSettings& settings) {
     std::vector<NamedSetting> list;
     for (const Entry& entry : kEntries)
         list.push_back({entry.name, entry.number ? fmt::format("{}", *entry.number(copy))
-                                                 : fmt::format("{}", *entry.flag(copy))});
+                                    : entry.flag ? fmt::format("{}", *entry.flag(copy))
+                                                 : *entry.text(copy)});
     return list;
 }
 
@@ -40,6 +44,10 @@ Status set_by_name(ProjectSettings& settings, std::string_view name, std::string
     for (const Entry& entry : kEntries) {
         known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.name);
         if (name != entry.name) continue;
+        if (entry.text) {
+            *entry.text(settings) = value;
+            return {};
+        }
         if (entry.flag) {
             if (value != "true" && value != "false")
                 return error("{} is \"{}\", must be true or false", name, value);

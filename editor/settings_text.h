@@ -12,7 +12,7 @@ namespace loam {
 
 struct NamedSetting {
     std::string name;   // "ground.tile_hiding": table and key of project.toml
-    std::string value;  // as it stands: a number, "true" or "false"
+    std::string value;  // as it stands: a number, "true" or "false", or a text
 };
 [[nodiscard]] std::vector<NamedSetting> named_settings(const ProjectSettings& settings);
 // Unknown names and values of the wrong kind are refused; ranges are the document's to check.

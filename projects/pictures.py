@@ -89,6 +89,39 @@ def stamp_picture(project, folder, path):
             project.remove_operator(one["id"])
 
 
+def imagery_picture(project, folder, path):
+    """Imagery made here of the map's own heights: fields in the valley, woods on its flanks, bare above. Without and with it."""
+    side = 2048
+    x, y = np.meshgrid(np.linspace(0, 4096, side), np.linspace(4096, 0, side))  # row 0 is north
+    z = np.asarray(project.height(np.clip(x, 0, project.bounds[2]), np.clip(y, 0, project.bounds[3])))
+    rng = np.random.default_rng(5)
+
+    def noise(texels):
+        small = Image.fromarray((rng.random((side // texels, side // texels)) * 255).astype(np.uint8))
+        return np.asarray(small.resize((side, side), Image.BICUBIC), dtype=float)[..., None] / 255
+
+    fine, patches = noise(1), 0.5 * noise(64) + 0.3 * noise(16) + 0.2 * noise(4)
+    slope = np.hypot(*np.gradient(z, 2.0))[..., None]
+    high = np.clip((z - np.quantile(z, 0.1)) / (np.quantile(z, 0.95) - np.quantile(z, 0.1)), 0, 1)[..., None]
+    fields = np.array([[0.50, 0.46, 0.28], [0.36, 0.41, 0.24], [0.56, 0.51, 0.36], [0.31, 0.37, 0.23]])
+    plot = (x * 0.9 + y * 0.44) // 170 * 7 + (y * 0.9 - x * 0.44) // 80 * 13
+    meadow = np.array([0.42, 0.41, 0.27]) * (0.8 + 0.4 * patches)
+    colour = np.where(slope < 0.12, fields[plot.astype(int) % 4], meadow) * (0.85 + 0.3 * fine)
+    woods = np.array([0.15, 0.2, 0.12]) * (0.5 + fine)
+    bare = np.array([0.5, 0.47, 0.43]) * (0.75 + 0.3 * fine + 0.2 * patches)
+    colour = np.where((slope > 0.12) & (high < 0.55) & (patches > 0.45), woods, colour)
+    colour = np.where(high + 0.6 * (patches - 0.5) > 0.7, bare, colour)
+    Image.fromarray((np.clip(colour, 0, 1) * 255).astype(np.uint8)).save(f"{folder}/ortho.png")
+    camera = look(project, (2000, 1500), (2260, 3000), 260, 0)
+    views = []
+    project.add_imagery(f"{folder}/ortho.png", distance_m=200)
+    for strength in ("0", "1"):
+        project.set("imagery.strength", strength)
+        views.append(project.render(camera=camera, size=(800, 560))[..., :3])
+    Image.fromarray(np.concatenate(views, axis=1)).save(path, quality=90)
+    project.set("imagery.file", "")
+
+
 def main(source, out):
     os.makedirs(out, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
@@ -97,6 +130,7 @@ def main(source, out):
         with loam.open(copy) as project:
             picture(project, look(project, (2000, 1500), (2260, 3000), 150, 40), f"{out}/valley.jpg")
             picture(project, look(project, (3000, 1200), (2600, 1900), 60), f"{out}/ridge.jpg")
+            imagery_picture(project, folder, f"{out}/imagery.jpg")
             stamp_picture(project, folder, f"{out}/stamps.jpg")
             road_picture(project, f"{out}/road.jpg")
             for i, (x, y, r) in enumerate([(2040, 1905, 14), (2075, 1935, 6), (2010, 1940, 9), (2120, 1990, 22)]):

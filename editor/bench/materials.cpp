@@ -11,7 +11,9 @@
 #include "editor/bench/bench.h"
 #include "editor/bench/stage.h"
 #include "editor/picture.h"
+#include "runtime/base/srgb.h"
 #include "runtime/base/units.h"
+#include "runtime/document/imagery.h"
 #include "runtime/store/layer_file.h"
 #include "runtime/texture/composer.h"
 #include "shaders/texture/ompv.h"
@@ -46,12 +48,35 @@ void turn_vista_on(ProjectSettings& s) {
     s.ground.vista_distance_m = 20;
 }
 
+// Of any colours, in the page that is timed too.
+void turn_imagery_on(ProjectSettings& s) {
+    s.imagery = {.file = "imagery/bench.imagery", .strength = 1, .distance_m = 20};
+}
+
+Status write_imagery(const std::filesystem::path& project, const ProjectSettings& settings) {
+    const std::filesystem::path file = project / settings.imagery.file;
+    std::error_code failure;
+    std::filesystem::create_directories(file.parent_path(), failure);
+    const ImageryShape shape = imagery_shape(settings, settings.index_spacing_m / 2);
+    auto writer = ImageryWriter::create(file, shape);
+    if (!writer) return writer.error();
+    std::vector<glm::vec4> row(static_cast<size_t>(shape.width));
+    for (int y = shape.height - 1; y >= 0; --y) {
+        for (int x = 0; x < shape.width; ++x)
+            row[static_cast<size_t>(x)] = {static_cast<float>(x % 61) / 60, static_cast<float>(y % 53) / 52,
+                                           static_cast<float>((x + y) % 89) / 88, 1};
+        LOAM_TRY((*writer)->append_row(row));
+    }
+    return (*writer)->finish();
+}
+
 constexpr Feature kFeatures[] = {
     {"plain", [](ProjectSettings&) {}},
     {"distortion", [](ProjectSettings& s) { s.ground.distortion_amplitude_m = 0.6 * s.index_spacing_m; }},
     {"tile hiding", [](ProjectSettings& s) { s.ground.tile_hiding = true; }},
     {"vista", turn_vista_on},
     {"transitions", make_half_transitions},
+    {"imagery", turn_imagery_on},
     {"all", [](ProjectSettings& s) {
          s.ground.distortion_amplitude_m = 0.6 * s.index_spacing_m;
          s.ground.tile_hiding = true;
@@ -155,6 +180,7 @@ Status add_costs(const BenchRequest& request, gpu::Device& device, BenchTable& t
                 if (!document) return document.error();
                 ProjectSettings settings = (*document)->settings();
                 feature.turn_on(settings);
+                if (settings.imagery.is_on()) LOAM_TRY(write_imagery(project->path(), settings));
                 LOAM_TRY((*document)->change_settings(settings));
             }
             auto cost = page_cost(project->path(), device, request.quick ? 3 : 9);
@@ -245,14 +271,6 @@ Status add_tile_hiding(const BenchRequest& request, gpu::Device& device, BenchTa
 
 // --- transitions ---
 
-double linear_of(uint8_t srgb) {
-    const double v = srgb / 255.0;
-    return v <= 0.04045 ? v / 12.92 : std::pow((v + 0.055) / 1.055, 2.4);
-}
-double srgb_of(double linear) {
-    return 255 * (linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
-}
-
 // The blend of one mip, linear albedo.
 std::vector<glm::dvec3> blended(const LayerTextures& from, const LayerTextures& to, size_t mip,
                                 float threshold) {
@@ -260,7 +278,8 @@ std::vector<glm::dvec3> blended(const LayerTextures& from, const LayerTextures& 
     for (size_t i = 0; i < out.size(); ++i) {
         const uint8_t *a = &from.albedo_reveal[mip][i * 4], *b = &to.albedo_reveal[mip][i * 4];
         const double cover = shared::ompv_cover(threshold, float(b[3]) / 255.0f);
-        for (int c = 0; c < 3; ++c) out[i][c] = std::lerp(linear_of(a[c]), linear_of(b[c]), cover);
+        for (int c = 0; c < 3; ++c)
+            out[i][c] = std::lerp(linear_of_srgb8(a[c]), linear_of_srgb8(b[c]), cover);
     }
     return out;
 }
@@ -291,7 +310,8 @@ Status add_transition_error(const BenchRequest& request, BenchTable& table) {
                 double sum = 0;
                 for (size_t i = 0; i < live.size(); ++i)
                     for (int c = 0; c < 3; ++c)
-                        sum += std::pow(srgb_of(live[i][c]) - srgb_of(authored[i][c]), 2);
+                        sum +=
+                            std::pow(255 * (srgb_of_linear(live[i][c]) - srgb_of_linear(authored[i][c])), 2);
                 row[fmt::format("mip {} rms/255", mip)] =
                     rounded(std::sqrt(sum / double(live.size() * 3)), 2);
                 const int half = side / 2;

@@ -107,7 +107,9 @@ Status add_vista_steps(const BenchRequest& request, gpu::Device& device, BenchTa
             }
         const double texel_m = layout.texel_m(page);
         const auto weight = [&](double of_m) {
-            return rounded(shared::vista_weight(float(std::log2(of_m)), float(vista_log2_begin(settings.ground))), 2);
+            return rounded(shared::vista_weight(float(std::log2(of_m)),
+                                                float(far_log2_begin(settings.ground.vista_distance_m))),
+                           2);
         };
         table.rows.push_back({{"texel mm", rounded(texel_m * 1000, 1)},
                               {"weight", weight(texel_m)},

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "runtime/base/check.h"
+#include "runtime/base/srgb.h"
 
 namespace loam {
 

@@ -9,6 +9,7 @@
 
 #include "editor/packer/error_metrics.h"
 #include "runtime/base/job_queue.h"
+#include "runtime/base/srgb.h"
 #include "shaders/texture/bc3.h"
 #include "shaders/texture/layer_math.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/base/srgb.h"
 #include "shaders/texture/layer_math.h"
 
 namespace loam {
@@ -14,15 +15,6 @@ uint8_t byte_of(float share) {
 }
 
 }  // namespace
-
-float srgb_of_linear(float linear) {
-    const float c = std::clamp(linear, 0.0f, 1.0f);
-    return c <= 0.0031308f ? c * 12.92f : 1.055f * std::pow(c, 1 / 2.4f) - 0.055f;
-}
-
-float linear_of_srgb(float srgb) {
-    return srgb <= 0.04045f ? srgb / 12.92f : std::pow((srgb + 0.055f) / 1.055f, 2.4f);
-}
 
 LayerTextures textures_of(const LayerPlanes& planes) {
     const size_t count = planes.albedo.size();

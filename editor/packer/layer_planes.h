@@ -21,7 +21,4 @@ struct LayerPlanes {  // row 0 is south
 // Of mip 0.
 [[nodiscard]] LayerPlanes planes_of(const LayerTextures& textures);
 
-[[nodiscard]] float srgb_of_linear(float linear);
-[[nodiscard]] float linear_of_srgb(float srgb);
-
 }  // namespace loam

@@ -9,6 +9,7 @@
 
 #include "editor/packer/map_image.h"
 #include "editor/packer/normal_maps.h"
+#include "runtime/base/srgb.h"
 #include "shaders/texture/layer_math.h"
 
 namespace loam {

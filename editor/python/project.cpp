@@ -414,6 +414,24 @@ void bind_edits(py::class_<Project>& c) {
             unwrap(p.session().change_settings(settings));
         },
         "Its texels show the nearer of its layers from now on.", py::arg("name"));
+    c.def(
+        "add_imagery",
+        [](Project& p, const std::string& file, std::optional<double> strength,
+           std::optional<double> distance_m) {
+            AddedImagery added;
+            {
+                const py::gil_scoped_release release;
+                added = unwrap(p.session().add_imagery({file, strength, distance_m}, keep_going));
+            }
+            return to_python(Json{{"file", added.settings.file},
+                                  {"texel_m", added.shape.spacing_m},
+                                  {"width", added.width},
+                                  {"height", added.height},
+                                  {"bytes", added.size_bytes},
+                                  {"notes", added.notes}});
+        },
+        "Lays a picture over the whole map as its far look; returns what was made of it.", py::arg("file"),
+        py::arg("strength") = py::none(), py::arg("distance_m") = py::none());
     c.def("add_layer", &add_layer,
           "Makes a layer of a folder of maps; returns its name, index, file and the packer's report.",
           py::arg("folder"), py::arg("name") = py::none(), py::arg("tile_m") = 2.0,

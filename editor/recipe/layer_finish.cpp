@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "editor/recipe/layer_canvas.h"
+#include "runtime/base/srgb.h"
 #include "shaders/texture/layer_math.h"
 
 namespace loam::recipe {
@@ -59,11 +60,6 @@ Plane occlusion_of(const Plane& height_texel, int size) {
 
 uint8_t byte(float v) {
     return static_cast<uint8_t>(std::lround(std::clamp(v, 0.0f, 1.0f) * 255.0f));
-}
-
-uint8_t srgb_byte(float linear) {
-    linear = std::clamp(linear, 0.0f, 1.0f);
-    return byte(linear <= 0.0031308f ? linear * 12.92f : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f);
 }
 
 }  // namespace
@@ -126,7 +122,8 @@ LayerTextures finished(Canvas& canvas, const Finish& f) {
             const float length = 1.0f / std::sqrt(1 + dx * dx + dy * dy);
             const glm::vec3 colour = f.mean_albedo + (albedo[c] * gain - f.mean_albedo) * f.contrast;
             uint8_t* a = &out.albedo_reveal[0][c * 4];
-            a[0] = srgb_byte(colour.r), a[1] = srgb_byte(colour.g), a[2] = srgb_byte(colour.b);
+            a[0] = srgb8_of_linear(colour.r), a[1] = srgb8_of_linear(colour.g),
+            a[2] = srgb8_of_linear(colour.b);
             a[3] = byte((fine[c] - low) / (high - low));
             uint8_t* b = &out.normal_gloss_occlusion[0][c * 4];
             b[0] = byte(shared::layer_encode_signed(-dx * length));

@@ -49,6 +49,7 @@ constexpr Bound kBound[] = {
     {"export", Key::e, kCtrl},
     {"add layer", Key::l, kCtrl},
     {"add stamp", Key::t, kCtrl},
+    {"add imagery", Key::i, kCtrl},
     {"quit", Key::q, kCtrl},
     {"frame", Key::f, {}},
     {"home", Key::home, {}},
@@ -99,6 +100,10 @@ void App::run(std::string_view action, ui::Ui& ui) {
         path_text = session.document().folder().parent_path().string();
         new_layer_name.clear();
         return ui::open_dialog(ui, "Add layer");
+    }
+    if (action == "add imagery") {
+        path_text = session.document().folder().parent_path().string();
+        return ui::open_dialog(ui, "Add imagery");
     }
     if (action == "add stamp") {
         path_text = session.document().folder().parent_path().string();

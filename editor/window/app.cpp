@@ -236,6 +236,13 @@ void App::layer_added(const AddedLayer& layer) {
     scene_changed();
 }
 
+void App::imagery_added(const AddedImagery& imagery) {
+    say(fmt::format("Imagery added, texels of {} m; it shows from {:.0f} m on", imagery.shape.spacing_m,
+                    imagery.settings.distance_m));
+    for (const std::string& note : imagery.notes) errors_.push_back(note);
+    scene_changed();
+}
+
 void App::add_stamp(const std::filesystem::path& file, const std::string& name) {
     const auto added = loam::add_stamp(session.document().folder(), file, name);
     if (!added) return fail(added.message());

@@ -49,7 +49,7 @@ struct HistoryStep { // commands of one group
 
 // Asked for by actions, done by the window's loop between two frames.
 struct Wish {
-    enum class Kind { none, open_project, export_picture, add_layer };
+    enum class Kind { none, open_project, export_picture, add_layer, add_imagery };
     Kind kind = Kind::none;
     std::filesystem::path path;
     int width = 0, height = 0;
@@ -98,6 +98,7 @@ class App {
     void set_layer(int index);
     // After the session has added it: into the palette and in use, its warnings said.
     void layer_added(const AddedLayer& layer);
+    void imagery_added(const AddedImagery& imagery);
     // Makes a stamp of a picture and takes it up; an error is shown.
     void add_stamp(const std::filesystem::path& file, const std::string& name);
     std::vector<std::string> stamp_names;  // of the project

@@ -97,6 +97,20 @@ void add_stamp_dialog(App& app, ui::Ui& ui) {
     if (ui::dialog_buttons(ui, {"Cancel", "Add"}) == 1) app.add_stamp(app.path_text, app.new_stamp_name);
 }
 
+void add_imagery_dialog(App& app, ui::Ui& ui) {
+    auto dialog = ui::dialog(ui, "Add imagery", 480);
+    if (!dialog) return;
+    ui::paragraph(
+        ui,
+        "A satellite or ortho picture of the whole map, of any size: its corners are the map's, its top is "
+        "north. It is the ground's far look.",
+        ui::Tone::dim);
+    ui::text_field(ui, "File", app.path_text);
+    ui.space(8);
+    if (ui::dialog_buttons(ui, {"Cancel", "Add"}) == 1)
+        app.wish = {.kind = Wish::Kind::add_imagery, .path = app.path_text};
+}
+
 // While a fill goes on nothing else is edited: it is one step of the history. Closing the dialog takes it
 // back.
 void fill_dialog(App& app, ui::Ui& ui) {
@@ -121,6 +135,7 @@ void build_dialogs(App& app, ui::Ui& ui) {
     export_dialog(app, ui);
     add_layer_dialog(app, ui);
     add_stamp_dialog(app, ui);
+    add_imagery_dialog(app, ui);
     fill_dialog(app, ui);
     for (const std::string& text : app.take_errors()) ui.toast(text, ui.theme.error, 8);
 }

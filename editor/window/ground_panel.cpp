@@ -78,4 +78,29 @@ void ground_properties(App& app, ui::Ui& ui) {
     if (ground != app.session.document().settings().ground) app.change_settings(settings);
 }
 
+void imagery_properties(App& app, ui::Ui& ui) {
+    ProjectSettings settings = app.session.document().settings();
+    ImagerySettings& imagery = settings.imagery;
+    if (imagery.file.empty()) {
+        if (ui::button(ui, "Add imagery…", {.tooltip = "A picture of the whole map as its far look"}))
+            app.run("add imagery", ui);
+        return;
+    }
+    ui::label(ui, std::filesystem::path(imagery.file).stem().string());
+    double percent = imagery.strength * 100;
+    if (ui::slider(ui, "Strength", percent, {.min = 0, .max = 100, .decimals = 0, .unit = "%"}))
+        imagery.strength = percent / 100;
+    ui::slider(ui, "From", imagery.distance_m,
+               {.min = kImageryDistance_m.min,
+                .max = kImageryDistance_m.max,
+                .decimals = 0,
+                .unit = "m",
+                .logarithmic = true,
+                .tooltip = "Where it begins to show; from four times that on it is alone"});
+    if (ui::button(ui, "Replace imagery…")) app.run("add imagery", ui);
+    if (ui::button(ui, "Remove imagery", {.tooltip = "Its file stays in the project's folder"}))
+        imagery.file.clear();
+    if (imagery != app.session.document().settings().imagery) app.change_settings(settings);
+}
+
 } // namespace loam::window

@@ -18,6 +18,7 @@ void file_menu(App& app, ui::Ui& ui) {
     ui::menu_separator(ui);
     action_item(app, ui, "Add layer…", "add layer", ui::Icon::paint);
     action_item(app, ui, "Add stamp…", "add stamp", ui::Icon::stamp);
+    action_item(app, ui, "Add imagery…", "add imagery", ui::Icon::open);
     action_item(app, ui, "Record script…", "record", ui::Icon::play);
     action_item(app, ui, "Export picture…", "export", ui::Icon::camera);
     ui::menu_separator(ui);

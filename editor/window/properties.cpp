@@ -266,6 +266,7 @@ void build_properties(App& app, ui::Ui& ui) {
     if (auto section = ui::section(ui, "Layers")) layer_palette(app, ui);
     if (auto section = ui::section(ui, "Transitions", ui::Section::closed)) transition_properties(app, ui);
     if (auto section = ui::section(ui, "Ground")) ground_properties(app, ui);
+    if (auto section = ui::section(ui, "Imagery", ui::Section::closed)) imagery_properties(app, ui);
     if (auto section = ui::section(ui, "Sun")) sun_properties(app, ui);
     if (auto section = ui::section(ui, "History")) history_list(app, ui);
 }

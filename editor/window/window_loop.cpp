@@ -51,6 +51,7 @@ Result<std::filesystem::path> WindowLoop::run() {
         if (app_.wish.kind == Wish::Kind::open_project) return app_.wish.path;
         if (app_.wish.kind == Wish::Kind::export_picture) LOAM_TRY(export_picture());
         if (app_.wish.kind == Wish::Kind::add_layer) LOAM_TRY(add_layer());
+        if (app_.wish.kind == Wish::Kind::add_imagery) LOAM_TRY(add_imagery());
         if (options_.max_frames > 0 && redraws() >= uint64_t(options_.max_frames)) break;
     }
     return std::filesystem::path();
@@ -248,6 +249,19 @@ Status WindowLoop::add_layer() {
     }
     LOAM_TRY(add_layer_pictures());
     app_.layer_added(*added);
+    return {};
+}
+
+Status WindowLoop::add_imagery() {
+    const Wish wish = std::exchange(app_.wish, {});
+    const auto added = session_.add_imagery({.file = wish.path, .strength = {}, .distance_m = {}}, {});
+    build_again_ = true;
+    if (!added) {
+        if (session_.device()->lost()) return added.error();
+        app_.fail(added.message());
+        return {};
+    }
+    app_.imagery_added(*added);
     return {};
 }
 

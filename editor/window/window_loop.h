@@ -42,6 +42,7 @@ class WindowLoop {
     Status add_layer_pictures(); // of layers that are new since the last call
     Status export_picture();
     Status add_layer();
+    Status add_imagery();
     Status poll_shaders(double now_s);
     void note_frame_time(double now_s);
 

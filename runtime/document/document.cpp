@@ -115,6 +115,14 @@ Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& fo
     impl->settings = std::move(*settings);
     impl->mode = mode;
     impl->stamps = std::make_unique<StampLibrary>(folder);
+    if (!impl->settings.imagery.file.empty()) {
+        auto imagery = Imagery::open(folder / impl->settings.imagery.file, impl->settings);
+        // It may come back; nothing that is saved depends on it.
+        if (imagery.ok())
+            impl->imagery = std::move(*imagery);
+        else
+            log(LogLevel::warning, "the imagery is not shown: {}", imagery.message());
+    }
     if (mode == OpenMode::read_write) {
         auto lock = WriterLock::acquire(folder);
         if (!lock.ok()) return lock.error();
@@ -229,9 +237,19 @@ Status Document::change_settings(const ProjectSettings& settings) {
     const auto before = identity_of(impl_->settings), after = identity_of(settings);
     for (size_t i = 0; i < before.size(); ++i)
         if (before[i] != after[i]) return error("{} cannot change once a project exists", before[i].first);
+    std::shared_ptr<const Imagery> imagery = impl_->imagery;
+    if (settings.imagery.file != impl_->settings.imagery.file) {
+        imagery = nullptr;
+        if (!settings.imagery.file.empty()) {
+            auto opened = Imagery::open(impl_->folder / settings.imagery.file, settings);
+            if (!opened.ok()) return opened.error();
+            imagery = std::move(*opened);
+        }
+    }
     LOAM_TRY(save_project(impl_->folder, settings));
     const Impl::Exclusive lock(*impl_);
     impl_->settings = settings;
+    impl_->imagery = std::move(imagery);
     ++impl_->revision;
     return {};
 }
@@ -283,6 +301,13 @@ ResolvedRoles Document::roles() const {
     const auto resolved = [&](const std::string& name) { return uint16_t(std::max(0, layer_index(name))); };
     return {resolved(impl_->settings.roles.scorched), resolved(impl_->settings.roles.broken)};
 }
+void Document::read_imagery(int level, int x0, int y0, int width, int height, uint32_t* rgba) const {
+    if (impl_->imagery)
+        impl_->imagery->read(level, x0, y0, width, height, rgba);
+    else
+        std::fill_n(rgba, size_t(width) * size_t(height), 0u);
+}
+
 std::vector<std::string> Document::stamps() const {
     return impl_->stamps->names();
 }

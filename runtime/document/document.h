@@ -85,6 +85,8 @@ class Document {
     // The caller holds a ReadLock.
     void read_heights_mm(int mip, int x0, int y0, int width, int height, int32_t* out) const;
     void read_index(int mip, int x0, int y0, int width, int height, IndexTexel* out) const;
+    // Of the imagery's grid (imagery.h); without imagery no texel has cover. The caller holds a ReadLock.
+    void read_imagery(int level, int x0, int y0, int width, int height, uint32_t* rgba) const;
     [[nodiscard]] int height_mip_count() const;  // down to one page
     [[nodiscard]] int index_mip_count() const;
     // Of mip 0. Texel (i, j) stands at world (i, j) * index_spacing_m, as height samples do; the last ones at

@@ -15,6 +15,7 @@
 
 #include "runtime/document/base_map.h"
 #include "runtime/document/document.h"
+#include "runtime/document/imagery.h"
 #include "runtime/document/journal_images.h"
 #include "runtime/document/operator_set.h"
 #include "runtime/document/page_edits.h"
@@ -48,6 +49,7 @@ struct Document::Impl {
     std::unique_ptr<BasePages> pages;
     OperatorSet operators;
     std::unique_ptr<StampLibrary> stamps;
+    std::shared_ptr<const Imagery> imagery;     // null: none, or its file could not be opened
     std::vector<PageStore::JournalHead> heads;  // ascending; the applied ones come first
     uint64_t next_operator = 1, next_sequence = 1, next_group = 1;
     PageBalance page_count;

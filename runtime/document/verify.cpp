@@ -18,7 +18,8 @@ constexpr size_t kMostFaults = 1000;  // of a wrecked file, no more than anybody
 class Verifier {
   public:
     Verifier(const std::filesystem::path& folder, const ProjectSettings& settings, PageStore& store)
-        : stamps_(folder),
+        : folder_(folder),
+          stamps_(folder),
           settings_(settings),
           store_(store),
           height_(height_shape(settings)),
@@ -32,6 +33,7 @@ class Verifier {
         LOAM_TRY(check_map<int32_t>(height_, settings_.default_height_mm));
         LOAM_TRY(check_map<IndexTexel>(index_, default_texel(settings_)));
         LOAM_TRY(check_counts());
+        check_imagery();
         LOAM_TRY(check_operators());
         LOAM_TRY(check_journal());
         return std::move(faults_);
@@ -174,6 +176,22 @@ class Verifier {
         return {};
     }
 
+    void check_imagery() {
+        if (settings_.imagery.file.empty()) return;
+        const auto file = folder_ / settings_.imagery.file;
+        if (const auto imagery = Imagery::open(file, settings_); !imagery.ok())
+            return fail("imagery: {}", imagery.message());
+        const auto opened = ImageryFile::open(file);
+        if (!opened.ok()) return fail("imagery: {}", opened.message());
+        const ImageryShape& shape = (*opened)->shape();
+        std::vector<uint8_t> tile(size_t(4) * kImageryTile * kImageryTile);
+        for (int level = 0; level < shape.level_count(); ++level)
+            for (int y = 0; y * kImageryTile < shape.height_at(level); ++y)
+                for (int x = 0; x * kImageryTile < shape.width_at(level); ++x)
+                    if (const Status read = (*opened)->read_tile(level, x, y, tile); !read.ok())
+                        fail("imagery: {}", read.message());
+    }
+
     Status check_operators() {
         const auto next = store_.read_meta("next_operator");
         if (!next.ok()) return next.error();
@@ -248,6 +266,7 @@ class Verifier {
             return index_cache_;
     }
 
+    std::filesystem::path folder_;
     StampLibrary stamps_;
     const ProjectSettings& settings_;
     PageStore& store_;

@@ -222,11 +222,14 @@ Status Renderer::settings_changed(gpu::FrameRing& ring) {
     Impl& r = *impl_;
     r.changed = true;
     const ProjectSettings& settings = r.document.settings();
+    LOAM_TRY(r.indices->take_settings());
     if (!r.layers->has_textures_of(settings)) {
         r.resolve->take_settings();
         return r.create_texture(ring);
     }
-    if (r.layers->ground == settings.ground && r.layers->entries == settings.layers) return {};
+    if (r.layers->ground == settings.ground && r.layers->imagery == settings.imagery &&
+        r.layers->entries == settings.layers)
+        return {};
     LOAM_TRY(r.layers->take_settings(ring, settings));
     r.resolve->take_settings();
     return r.textures.take_settings();

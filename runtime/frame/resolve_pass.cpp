@@ -27,6 +27,7 @@ void use_material(gpu::Commands& commands, const ResolveInputs& in, bool direct)
     if (direct)
         commands.use({{in.indices.indices(), Access::fragment_sampled},
                       {in.indices.tints(), Access::fragment_sampled},
+                      {in.indices.imagery(), Access::fragment_sampled},
                       {in.indices.page_table(), Access::fragment_sampled},
                       {in.texture.direct_params(), Access::fragment_sampled},
                       {in.texture.direct_places(), Access::fragment_sampled},
@@ -69,7 +70,8 @@ std::vector<gpu::Bound> direct_material(const ResolveInputs& in, bool smooth) {
             {s + 8, *in.decals.buffer, in.decals.offset, in.decals.size_bytes},
             {s + 9, in.layers.distortion_map().view(), in.layers.sampler},
             {s + 10, *in.paints.buffer, in.paints.offset, in.paints.size_bytes},
-            {s + 11, *in.segments.buffer, in.segments.offset, in.segments.size_bytes}};
+            {s + 11, *in.segments.buffer, in.segments.offset, in.segments.size_bytes},
+            {s + 12, in.indices.imagery().view(), in.texture.nearest_sampler()}};
 }
 
 std::vector<gpu::Bound> floor_material(const ResolveInputs& in) {
@@ -163,7 +165,7 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
         // 0: fine shadows, 20: both mips of a page, 21: layers with metal, 22: decals, 23: of materials,
         // 25: texels, 26: taps, 27: look-ups they are shared among, 28: the sampler's own anisotropy, 30, 31:
         // the page's layout and channels, 40: tile hiding, 41: distortion, 42: transitions, 43: layers
-        // between their mips, 44: vista UVs.
+        // between their mips, 44: vista UVs, 45: imagery.
         .constants = {{0, v.fine_shadows},
                       {20, v.two_mips},
                       {21, layers.has_metal ? 1u : 0u},
@@ -179,7 +181,8 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
                       {41, layers.ground.distortion_amplitude_m > 0},
                       {42, layers.has_transitions},
                       {43, v.smooth_layers()},
-                      {44, layers.ground.has_vista()}},
+                      {44, layers.ground.has_vista()},
+                      {45, layers.imagery.is_on()}},
         .color_formats = {kPictureFormat},
         .depth_format = device_->caps().depth_stencil,
         .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
@@ -195,6 +198,7 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
         d.bindings.push_back(gpu::sampled_image(kMaterialSlot + buffers + images + 1));
         d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images + 2));
         d.bindings.push_back(gpu::storage_buffer(kMaterialSlot + buffers + images + 3));
+        d.bindings.push_back(gpu::sampled_image(kMaterialSlot + buffers + images + 4));
     }
     if (v.debug) d.bindings.push_back(gpu::storage_buffer(kDebugFactsSlot));
     if (v.map) {

@@ -8,6 +8,7 @@
 #include "runtime/document/document.h"
 #include "runtime/maps/base_window.h"
 #include "runtime/maps/rect_upload.h"
+#include "shaders/texture/imagery.h"
 
 namespace loam {
 
@@ -21,6 +22,8 @@ struct IndexPage {
     // The same as the GPU has them; the tint's fourth byte is 255.
     std::vector<uint16_t> layers;
     std::vector<uint32_t> tints;
+    std::vector<uint32_t> imagery;  // of this update only
+    uint64_t imagery_generation = 0;
 };
 
 VirtualMapDesc map_desc(const Document& document, int slot_count) {
@@ -50,19 +53,33 @@ void compose_page(const Document& document, const VirtualMap& map, const Virtual
         }
 }
 
+// The square of imagery that is the page's.
+std::vector<uint32_t> imagery_of(const Document& document, const MapPage& page) {
+    constexpr int kBorder = kIndexBorder * kImageryDensity, kPayload = kIndexPayload * kImageryDensity;
+    std::vector<uint32_t> texels(size_t(kImageryPageTexels) * kImageryPageTexels);
+    const auto lock = document.read_lock();
+    document.read_imagery(page.level, page.x * kPayload - kBorder, page.y * kPayload - kBorder,
+                          kImageryPageTexels, kImageryPageTexels, texels.data());
+    return texels;
+}
+
 }  // namespace
 
 struct IndexMap::Impl {
-    Impl(const Document& d, const VirtualMapDesc& desc)
-        : document(d), map(desc), pages(size_t(desc.slot_count)) {}
+    Impl(gpu::Device* on, const Document& d, const VirtualMapDesc& desc)
+        : device(on), document(d), map(desc), pages(size_t(desc.slot_count)) {}
 
+    Status take_imagery();
     std::vector<VirtualMap::Work> compose_planned(uint64_t frame, int new_pages);
     Status cmd_update_table(gpu::FrameRing& ring, gpu::Commands& commands);
 
+    gpu::Device* device;
     const Document& document;
     VirtualMap map;
     std::vector<IndexPage> pages;  // one a slot
-    gpu::Image indices, tints;
+    gpu::Image indices, tints, imagery;
+    std::string imagery_file;  // that pages are composed with; empty: none
+    uint64_t imagery_generation = 0;
     gpu::Buffer page_table;
     bool table_cleared = false;
 };
@@ -74,7 +91,7 @@ Result<std::unique_ptr<IndexMap>> IndexMap::create(gpu::Device* device, const Do
                                                    const IndexMapDesc& desc) {
     if (desc.slot_count < 1) return error("an index map needs at least one slot, not {}", desc.slot_count);
     std::unique_ptr<IndexMap> map(new IndexMap);
-    map->impl_ = std::make_unique<Impl>(document, map_desc(document, desc.slot_count));
+    map->impl_ = std::make_unique<Impl>(device, document, map_desc(document, desc.slot_count));
     if (!desc.gpu) return map;
 
     LOAM_CHECK(device, "an index map with GPU arrays needs a device");
@@ -101,7 +118,36 @@ Result<std::unique_ptr<IndexMap>> IndexMap::create(gpu::Device* device, const Do
     map->impl_->indices = std::move(*indices);
     map->impl_->tints = std::move(*tints);
     map->impl_->page_table = std::move(*page_table);
+    LOAM_TRY(map->impl_->take_imagery());
     return map;
+}
+
+Status IndexMap::Impl::take_imagery() {
+    const ImagerySettings& wanted = document.settings().imagery;
+    const std::string file = wanted.is_on() ? wanted.file : std::string();
+    if (file == imagery_file) return {};
+    if (file.empty()) {
+        imagery = {};
+    } else if (!imagery) {
+        auto made = gpu::Image::create(
+            *device, {.name = "imagery pages",
+                      .format = VK_FORMAT_R8G8B8A8_SRGB,
+                      .width = kImageryPageTexels,
+                      .height = kImageryPageTexels,
+                      .layer_count = uint32_t(map.desc().slot_count),
+                      .array_view = true,
+                      .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
+        if (!made) return made.error();
+        imagery = std::move(*made);
+    }
+    imagery_file = file;
+    ++imagery_generation;
+    map.invalidate(extended_beyond_edges(document.bounds(), document.bounds()));
+    return {};
+}
+
+Status IndexMap::take_settings() {
+    return impl_->indices ? impl_->take_imagery() : Status();
 }
 
 const VirtualMap& IndexMap::map() const {
@@ -123,8 +169,15 @@ std::vector<VirtualMap::Work> IndexMap::Impl::compose_planned(uint64_t frame, in
     for (const auto& w : work) texels += w.rect.area();
     const int count = int(work.size());
     const auto compose_range = [&](int begin, int end) {
-        for (int i = begin; i < end; ++i)
-            compose_page(document, map, work[size_t(i)], pages[size_t(work[size_t(i)].slot)]);
+        for (int i = begin; i < end; ++i) {
+            const VirtualMap::Work& w = work[size_t(i)];
+            IndexPage& page = pages[size_t(w.slot)];
+            compose_page(document, map, w, page);
+            // An edit changes no imagery.
+            if (!imagery || (!w.whole && page.imagery_generation == imagery_generation)) continue;
+            page.imagery = imagery_of(document, w.page);
+            page.imagery_generation = imagery_generation;
+        }
     };
     parallel_ranges(count, texels >= kParallelTexels ? 1 : std::max(count, 1), compose_range);
     return work;
@@ -159,14 +212,19 @@ Status IndexMap::Impl::cmd_update_table(gpu::FrameRing& ring, gpu::Commands& com
 Status IndexMap::update(gpu::FrameRing& ring, gpu::Commands& commands, uint64_t frame, int new_pages) {
     LOAM_CHECK(impl_->indices, "an index map without GPU arrays is updated by update_without_gpu");
     const std::vector<VirtualMap::Work> work = impl_->compose_planned(frame, new_pages);
-    std::vector<RectUpload> indices, tints;
+    std::vector<RectUpload> indices, tints, imagery;
     for (const VirtualMap::Work& w : work) {
         const IndexPage& page = impl_->pages[size_t(w.slot)];
         indices.push_back({w.rect, uint32_t(w.slot), page.layers.data()});
         tints.push_back({w.rect, uint32_t(w.slot), page.tints.data()});
+        if (!page.imagery.empty())
+            imagery.push_back(
+                {{0, 0, kImageryPageTexels, kImageryPageTexels}, uint32_t(w.slot), page.imagery.data()});
     }
     LOAM_TRY(cmd_upload_rects(ring, commands, impl_->indices, 2, indices));
     LOAM_TRY(cmd_upload_rects(ring, commands, impl_->tints, 4, tints));
+    if (!imagery.empty()) LOAM_TRY(cmd_upload_rects(ring, commands, impl_->imagery, 4, imagery));
+    for (const VirtualMap::Work& w : work) impl_->pages[size_t(w.slot)].imagery = {};
     for (const VirtualMap::Work& w : work) impl_->map.finish(w);
     return impl_->cmd_update_table(ring, commands);
 }
@@ -185,6 +243,10 @@ gpu::Image& IndexMap::indices() {
 
 gpu::Image& IndexMap::tints() {
     return impl_->tints;
+}
+
+gpu::Image& IndexMap::imagery() {
+    return impl_->imagery ? impl_->imagery : impl_->tints;
 }
 
 gpu::Buffer& IndexMap::page_table() {
@@ -242,7 +304,8 @@ uint32_t IndexMap::count_stale_pages(const Document& document) const {
 }
 
 uint64_t IndexMap::gpu_bytes() const {
-    return impl_->indices ? impl_->indices.bytes() + impl_->tints.bytes() + impl_->page_table.size_bytes()
+    return impl_->indices ? impl_->indices.bytes() + impl_->tints.bytes() + impl_->page_table.size_bytes() +
+                                (impl_->imagery ? impl_->imagery.bytes() : 0)
                           : 0;
 }
 

@@ -1,6 +1,7 @@
 // The virtual index and colour map: a layer index and a tint a texel, always in step with each other; coarser
-// levels are point samples. Pages of 128² + 4 border nest with virtual-texture pages: every texture page lies
-// in one index page. Source: Call of Duty talk, "One Material Per Vertex", "Virtual Index & Color Map".
+// levels are point samples. Where the map has imagery (document/imagery.h), a page holds its texels too.
+// Pages of 128² + 4 border nest with virtual-texture pages: every texture page lies in one index page.
+// Source: Call of Duty talk, "One Material Per Vertex", "Virtual Index & Color Map".
 #pragma once
 
 #include <memory>
@@ -42,6 +43,11 @@ class IndexMap {
 
     [[nodiscard]] gpu::Image& indices();  // R16_UINT 136x136, one layer a slot
     [[nodiscard]] gpu::Image& tints();    // RGBA8_UNORM (sRGB-encoded) 136x136, one layer a slot
+    // RGBA8_SRGB 272x272 (shaders/texture/imagery.h), one layer a slot, cover in alpha; without imagery the
+    // tints, that there is something to bind.
+    [[nodiscard]] gpu::Image& imagery();
+    // After Document::change_settings: where the imagery is another one, every page is composed again.
+    Status take_settings();
     // Page table on the GPU for shaders that look up any place: uint a table entry (kNoSlot: absent).
     [[nodiscard]] gpu::Buffer& page_table();
 

@@ -2,10 +2,10 @@
 // lost in length is spread of direction, which goes into the gloss, so that distant ground does not glitter.
 // Source: the Infinite Warfare talk ("Texture Packer"); how much is shaders/texture/layer_math.h.
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "runtime/base/check.h"
+#include "runtime/base/srgb.h"
 #include "runtime/store/layer_file.h"
 #include "shaders/texture/layer_math.h"
 
@@ -17,22 +17,6 @@ uint8_t byte_of(double share) {
     return uint8_t(std::clamp(share, 0.0, 1.0) * 255.0 + 0.5);
 }
 
-const std::array<double, 256>& linear_table() {
-    static const std::array<double, 256> table = [] {
-        std::array<double, 256> t{};
-        for (int i = 0; i < 256; ++i) {
-            const double s = i / 255.0;
-            t[size_t(i)] = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-        }
-        return t;
-    }();
-    return table;
-}
-
-double srgb_of(double linear) {
-    return linear <= 0.0031308 ? linear * 12.92 : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-}
-
 // The four texels under texel (x, y) of a mip of `side` texels.
 struct Quad {
     size_t at[4];
@@ -42,11 +26,10 @@ struct Quad {
 };
 
 void shrink_albedo(const uint8_t* fine, uint8_t* coarse, const Quad& quad) {
-    const auto& linear = linear_table();
     for (size_t channel = 0; channel < 3; ++channel) {
         double sum = 0;
-        for (const size_t at : quad.at) sum += linear[fine[4 * at + channel]];
-        coarse[channel] = byte_of(srgb_of(sum / 4));
+        for (const size_t at : quad.at) sum += linear_of_srgb8(fine[4 * at + channel]);
+        coarse[channel] = srgb8_of_linear(sum / 4);
     }
     int reveal = 0;
     for (const size_t at : quad.at) reveal += fine[4 * at + 3];

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <utility>
 
 #include "runtime/store/zstd_frame.h"
 
@@ -15,28 +16,6 @@ namespace loam {
 namespace {
 
 constexpr int kZstdLevel = 6;  // written once, read often
-
-// On the disk when it returns; what was opened and could not be written is gone.
-Status write_whole(const std::filesystem::path& file, std::span<const uint8_t> bytes) {
-    const int descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-    if (descriptor < 0) return error("cannot write {}: {}", file.string(), std::strerror(errno));
-    size_t written = 0;
-    int failure = 0;
-    while (written < bytes.size() && failure == 0) {
-        const ssize_t step = ::write(descriptor, bytes.data() + written, bytes.size() - written);
-        if (step >= 0)
-            written += size_t(step);
-        else if (errno != EINTR)
-            failure = errno;
-    }
-    if (failure == 0 && ::fsync(descriptor) != 0) failure = errno;
-    ::close(descriptor);
-    if (failure != 0) {
-        ::unlink(file.c_str());  // half of it helps nobody
-        return error("cannot write {}: {}", file.string(), std::strerror(failure));
-    }
-    return {};
-}
 
 }  // namespace
 
@@ -65,14 +44,57 @@ Status read_part(std::span<const uint8_t>& rest, std::span<uint8_t> out) {
     return {};
 }
 
-Status replace_file(const std::filesystem::path& file, std::span<const uint8_t> bytes) {
+ReplacedFile::ReplacedFile(std::filesystem::path file, int descriptor)
+    : file_(std::move(file)), temporary_(file_), descriptor_(descriptor) {
+    temporary_ += ".new";
+}
+
+ReplacedFile::ReplacedFile(ReplacedFile&& other) noexcept
+    : file_(std::move(other.file_)),
+      temporary_(std::move(other.temporary_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      size_bytes_(other.size_bytes_) {}
+
+ReplacedFile::~ReplacedFile() {
+    if (descriptor_ < 0) return;
+    ::close(descriptor_);
+    ::unlink(temporary_.c_str());  // half of it helps nobody
+}
+
+Result<ReplacedFile> ReplacedFile::create(const std::filesystem::path& file) {
     std::filesystem::path temporary = file;
     temporary += ".new";
-    LOAM_TRY(write_whole(temporary, bytes));
-    std::error_code failure;
-    std::filesystem::rename(temporary, file, failure);
-    if (failure) return error("cannot replace {}: {}", file.string(), failure.message());
+    const int descriptor = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+    if (descriptor < 0) return error("cannot write {}: {}", temporary.string(), std::strerror(errno));
+    return ReplacedFile(file, descriptor);
+}
+
+Status ReplacedFile::append(std::span<const uint8_t> bytes) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) return error("cannot write {}: {}", temporary_.string(), std::strerror(errno));
+        bytes = bytes.subspan(size_t(written));
+        size_bytes_ += uint64_t(written);
+    }
     return {};
+}
+
+Status ReplacedFile::commit() {
+    if (::fsync(descriptor_) != 0)
+        return error("cannot write {}: {}", temporary_.string(), std::strerror(errno));
+    std::error_code failure;
+    std::filesystem::rename(temporary_, file_, failure);
+    if (failure) return error("cannot replace {}: {}", file_.string(), failure.message());
+    ::close(std::exchange(descriptor_, -1));
+    return {};
+}
+
+Status replace_file(const std::filesystem::path& file, std::span<const uint8_t> bytes) {
+    auto replaced = ReplacedFile::create(file);
+    if (!replaced.ok()) return replaced.error();
+    LOAM_TRY(replaced->append(bytes));
+    return replaced->commit();
 }
 
 Result<std::vector<uint8_t>> read_file(const std::filesystem::path& file) {

@@ -19,7 +19,25 @@ void append_part(std::span<const uint8_t> part, std::vector<uint8_t>& bytes);
 // Takes the part off the front of `rest`; it must hold exactly out.size() bytes.
 [[nodiscard]] Status read_part(std::span<const uint8_t>& rest, std::span<uint8_t> out);
 
-// Written beside the old file, then put in its place: whatever happens, one of both is there whole.
+// A file written beside the old one, then put in its place: whatever happens, one of both is there whole.
+class ReplacedFile {
+  public:
+    [[nodiscard]] static Result<ReplacedFile> create(const std::filesystem::path& file);
+    ReplacedFile(ReplacedFile&& other) noexcept;
+    ReplacedFile& operator=(ReplacedFile&&) = delete;
+    ~ReplacedFile();  // without `commit` nothing is left of it
+
+    [[nodiscard]] Status append(std::span<const uint8_t> bytes);
+    [[nodiscard]] uint64_t size_bytes() const { return size_bytes_; }
+    // On the disk when it returns.
+    [[nodiscard]] Status commit();
+
+  private:
+    ReplacedFile(std::filesystem::path file, int descriptor);
+    std::filesystem::path file_, temporary_;
+    int descriptor_ = -1;
+    uint64_t size_bytes_ = 0;
+};
 [[nodiscard]] Status replace_file(const std::filesystem::path& file, std::span<const uint8_t> bytes);
 [[nodiscard]] Result<std::vector<uint8_t>> read_file(const std::filesystem::path& file);
 

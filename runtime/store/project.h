@@ -63,6 +63,18 @@ struct GroundSettings {
     bool operator==(const GroundSettings&) const = default;
 };
 
+inline constexpr NumberRange kImageryDistance_m{1, 16'384};
+
+// Imagery over the whole map as the ground's far look: its colours in place of the layers', whose relief
+// stays.
+struct ImagerySettings {
+    std::string file;     // "imagery/ortho.imagery", relative to the project (imagery_file.h); empty: none
+    double strength = 1;  // 0 … 1, of its colours where they show alone; 0: off
+    double distance_m = 400;  // from here on it shows, alone from four times that
+    [[nodiscard]] bool is_on() const { return !file.empty() && strength > 0; }
+    bool operator==(const ImagerySettings&) const = default;
+};
+
 struct ProjectSettings {
     std::string name = "untitled";
     // Height base map: samples (i, j) at world (i, j) * height_spacing_m, 0 <= i < height_samples_x.
@@ -75,6 +87,7 @@ struct ProjectSettings {
     std::vector<LayerEntry> layers;
     LayerRoles roles;
     GroundSettings ground;
+    ImagerySettings imagery;
     std::vector<Channel> channels;  // that pages hold, each once
     double sun_azimuth_rad = 3.9;  // clockwise from north, where the sun stands
     double sun_elevation_rad = 0.6;

@@ -216,6 +216,16 @@ ProjectSettings settings_of(const toml::table& root) {
                              number_of(n, "vista_distance_m", kVistaDistance_m.min, kVistaDistance_m.max);
                      }}});
     };
+    const auto read_imagery = [&](const toml::node& node) {
+        ImagerySettings& i = s.imagery;
+        read_table(table_of(node, "imagery"), "[imagery]",
+                   {{"file", [&](const toml::node& n) { i.file = string_of(n, "file"); }},
+                    {"strength", [&](const toml::node& n) { i.strength = number_of(n, "strength", 0, 1); }},
+                    {"distance_m", [&](const toml::node& n) {
+                         i.distance_m =
+                             number_of(n, "distance_m", kImageryDistance_m.min, kImageryDistance_m.max);
+                     }}});
+    };
     const auto read_texture = [&](const toml::node& node) {
         read_table(table_of(node, "texture"), "[texture]",
                    {{"channels", [&](const toml::node& n) {
@@ -236,6 +246,7 @@ ProjectSettings settings_of(const toml::table& root) {
                 {"air", read_air},
                 {"roles", read_roles},
                 {"ground", read_ground},
+                {"imagery", read_imagery},
                 {"texture", read_texture},
                 {"layer", read_layers}});
     if (!has_samples) refuse(root, "height_samples is missing in [terrain]");
@@ -286,6 +297,10 @@ std::string text_of(const ProjectSettings& s) {
                        toml_real(s.ground.distortion_period_m), s.ground.tile_hiding);
     out += fmt::format("vista_scale = {} # 1: off\nvista_distance_m = {}\n", toml_real(s.ground.vista_scale),
                        toml_real(s.ground.vista_distance_m));
+    if (s.imagery != ImagerySettings{})
+        out += fmt::format("\n[imagery]\nfile = {}\nstrength = {} # 0: off\ndistance_m = {}\n",
+                           toml_text(s.imagery.file), toml_real(s.imagery.strength),
+                           toml_real(s.imagery.distance_m));
     for (const LayerEntry& layer : s.layers) {
         out += fmt::format("\n[[layer]]\nname = {}\n", toml_text(layer.name));
         if (layer.blend) {

@@ -23,16 +23,20 @@ bool is_power_of_two(double value) {
     return std::frexp(value, &exponent) == 0.5;
 }
 
+Status check_inside(const std::string& path) {
+    const std::filesystem::path file(path);
+    bool climbs = file.is_absolute();
+    for (const auto& part : file) climbs |= part == "..";
+    return climbs ? error("the file \"{}\" is outside the project; give a path relative to it", path)
+                  : Status();
+}
+
 Status check_layer(const LayerEntry& layer, std::set<std::string>& names) {
     if (layer.name.empty()) return error("a layer has no name");
     if (!names.insert(layer.name).second)
         return error("two layers are called \"{}\"; names must be unique", layer.name);
-    const std::filesystem::path file(layer.file);
-    bool climbs = file.is_absolute();
-    for (const auto& part : file) climbs |= part == "..";
-    if (climbs)
-        return error("layer \"{}\": the file \"{}\" is outside the project; give a path relative to it",
-                     layer.name, layer.file);
+    if (const Status inside = check_inside(layer.file); !inside.ok())
+        return error("layer \"{}\": {}", layer.name, inside.message());
     const auto check = [&](const char* key, double value, double low, double high) -> Status {
         const Status status = check_number(key, value, low, high);
         return status.ok() ? status : error("layer \"{}\": {}", layer.name, status.message());
@@ -77,6 +81,14 @@ Status check_ground(const ProjectSettings& settings) {
                         kVistaDistance_m.max);
 }
 
+Status check_imagery(const ImagerySettings& imagery) {
+    if (const Status inside = check_inside(imagery.file); !inside.ok())
+        return error("[imagery]: {}", inside.message());
+    LOAM_TRY(check_number("imagery.strength", imagery.strength, 0, 1));
+    return check_number("imagery.distance_m", imagery.distance_m, kImageryDistance_m.min,
+                        kImageryDistance_m.max);
+}
+
 }  // namespace
 
 int default_refine(double height_spacing_m) {
@@ -109,6 +121,7 @@ Status check_settings(const ProjectSettings& settings) {
     for (const LayerEntry& layer : settings.layers) LOAM_TRY(check_layer(layer, names));
     LOAM_TRY(check_blends(settings.layers));
     LOAM_TRY(check_ground(settings));
+    LOAM_TRY(check_imagery(settings.imagery));
     for (size_t i = 0; i < settings.channels.size(); ++i)
         for (size_t k = 0; k < i; ++k)
             if (settings.channels[i] == settings.channels[k])

@@ -38,7 +38,7 @@ glm::ivec2 target_of(const ComposeJob& job) {
 }
 
 constexpr uint32_t kPageTextureSlot = 4;                               // of mip_rgba8.comp
-constexpr int kOneLayerKind = 1, kTransitionKind = 2, kVistaKind = 4;  // bits of a square's kind
+constexpr int kOneLayerKind = 1, kTransitionKind = 2, kFarKind = 4;    // bits of a square's kind
 
 // Of a place in something that repeats every period_m: 0 … 1.
 float phase(double at_m, double period_m) {
@@ -67,8 +67,8 @@ struct Composer::Work {
     std::array<uint32_t, kKinds> kind_tiles{};
 };
 
-double vista_log2_begin(const GroundSettings& ground) {
-    return std::log2(ground.vista_distance_m / double(kVistaDistance));
+double far_log2_begin(double distance_m) {
+    return std::log2(distance_m / double(kVistaDistance));
 }
 
 Composer::Composer(gpu::Device& device, const Document& document, IndexMap& index, LayerSet& layers,
@@ -140,26 +140,28 @@ Result<gpu::Pipeline> Composer::material_pipeline(int kind) const {
                          .bindings = {gpu::sampled_image(0), gpu::sampled_image(1), gpu::sampled_image(2),
                                       gpu::sampled_image(3), gpu::sampled_image(4), gpu::storage_buffer(5),
                                       gpu::storage_image(6), gpu::storage_buffer(7), gpu::storage_buffer(8),
-                                      gpu::sampled_image(9)},
+                                      gpu::sampled_image(9), gpu::sampled_image(10)},
                          .push_bytes = sizeof(shared::ComposePush),
                          .constants = {{0, one_layer},
                                        {1, layers_.has_metal},
                                        {2, layers_.ground.tile_hiding},
                                        {3, bool(layers_.distortion)},
                                        {4, bool(kind & kTransitionKind)},
-                                       {5, bool(kind & kVistaKind)},
+                                       {5, kind & kFarKind && layers_.ground.has_vista()},
+                                       {6, kind & kFarKind && layers_.imagery.is_on()},
                                        {31, textures_.placement}}});
 }
 
 Status Composer::take_settings() {
-    const std::array<bool, 4> features{layers_.ground.tile_hiding, bool(layers_.distortion),
-                                       layers_.has_transitions, layers_.ground.has_vista()};
+    const std::array<bool, 5> features{layers_.ground.tile_hiding, bool(layers_.distortion),
+                                       layers_.has_transitions, layers_.ground.has_vista(),
+                                       layers_.imagery.is_on()};
     if (materials_[0] && features == features_) return {};
     features_ = features;
     for (int kind = 0; kind < int(kKinds); ++kind) {
         materials_[size_t(kind)] = {};
         if ((kind & kTransitionKind) && !layers_.has_transitions) continue;
-        if ((kind & kVistaKind) && !layers_.ground.has_vista()) continue;
+        if ((kind & kFarKind) && !layers_.changes_afar()) continue;
         auto made = material_pipeline(kind);
         if (!made.ok()) return made.error();
         materials_[size_t(kind)] = std::move(*made);
@@ -183,17 +185,22 @@ shared::LayerPlace Composer::layer_place(double origin_x_m, double origin_y_m, d
             .channels = {}};
 }
 
-float Composer::vista_of(const PageId& page) const {
-    if (!layers_.ground.has_vista()) return 0;
-    return shared::vista_weight(float(std::log2(layout_.texel_m(page))),
-                                float(vista_log2_begin(layers_.ground)));
+Composer::FarWeights Composer::far_of(const PageId& page) const {
+    FarWeights far;
+    const float log2_texel = float(std::log2(layout_.texel_m(page)));
+    if (layers_.ground.has_vista())
+        far.vista = shared::vista_weight(log2_texel, float(far_log2_begin(layers_.ground.vista_distance_m)));
+    if (layers_.imagery.is_on())
+        far.imagery = float(layers_.imagery.strength) *
+                      shared::vista_weight(log2_texel, float(far_log2_begin(layers_.imagery.distance_m)));
+    return far;
 }
 
 // The texels of the coarser page that lie where the rectangle's second mip does, from the same inputs. None
-// where both weigh the magnified lookup alike: there the mean is right.
+// where both weigh the magnified lookup and the imagery alike: there the mean is right.
 std::optional<ComposeJob> Composer::second_mip(const ComposeJob& job) const {
-    const auto page = layers_.ground.has_vista() ? layout_.coarser(job.page) : std::nullopt;
-    if (!page || vista_of(*page) == vista_of(job.page)) return {};
+    const auto page = layers_.changes_afar() ? layout_.coarser(job.page) : std::nullopt;
+    if (!page || far_of(*page) == far_of(job.page)) return {};
     const WorldRect own = layout_.square(job.page), square = layout_.square(*page);
     // A mip's border is half the page's.
     const auto first = [&](double from, double to) {
@@ -216,6 +223,7 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
     const glm::dvec2 origin((square.min_x - index_square.min_x) / spacing_m + kIndexBorder,
                             (square.min_y - index_square.min_y) / spacing_m + kIndexBorder);
     const double scale = layout_.page_side_m(job.page) / spacing_m;
+    const FarWeights far = far_of(job.page);
     placed.rect = {
         .rect_min = {job.rect.x0, job.rect.y0},
         .rect_size = {job.rect.width(), job.rect.height()},
@@ -225,7 +233,8 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
         .index_slot = uint32_t(job.index_slot),
         .index_vertex = glm::ivec2(job.index_page.x, job.index_page.y) * kIndexPayload - kIndexBorder,
         .index_level = job.index_page.level,
-        .vista = vista_of(job.page),
+        .vista = far.vista,
+        .imagery = far.imagery,
         .mip_min = {-1, -1},
         .first_place = 0,
         .last_layer = uint32_t(layers_.count - 1),
@@ -277,7 +286,7 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
                 transitions |= layers_.is_transition(ground.tile_hiding ? other >> kKeyLayerShift : other);
             }
         return Placed::Tile{layer, (one_layer ? kOneLayerKind : 0) | (transitions ? kTransitionKind : 0) |
-                                       (placed.rect.vista > 0 ? kVistaKind : 0)};
+                                       (far == FarWeights{} ? 0 : kFarKind)};
     };
     const glm::ivec2 size = placed.rect.rect_size / kTileTexels;
     const Placed::Tile whole = tile_of(seen(job.rect));
@@ -391,6 +400,7 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
                                                   {layers_.metalness, Access::compute_sampled},
                                                   {index_.indices(), Access::compute_sampled},
                                                   {index_.tints(), Access::compute_sampled},
+                                                  {index_.imagery(), Access::compute_sampled},
                                                   {layers_.distortion_map(), Access::compute_sampled}});
     uint32_t first_tile = 0;
     for (size_t kind = 0; kind < work.kind_tiles.size(); first_tile += work.kind_tiles[kind++]) {
@@ -406,7 +416,8 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
                                  {6, scratch_.mip_view(0)},
                                  {7, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
                                  {8, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes},
-                                 {9, layers_.distortion_map().view(), layers_.sampler}});
+                                 {9, layers_.distortion_map().view(), layers_.sampler},
+                                 {10, index_.imagery().view(), nearest_}});
         commands.push(pipeline, shared::ComposePush{first_tile});
         commands.dispatch(tiles);
     }

@@ -4,9 +4,9 @@
 // rectangles: shaders find theirs in lists of tiles of 8x8 texels, a list for each kind of ground.
 //
 // A rectangle is aligned to 8 texels, so that it holds whole blocks of both mips. The second mip is the mean
-// of the first; where vista UVs weigh otherwise in the next coarser page, it is composed as that page's
-// texels are, so that going from page to page shows no step. Each texel is a function of its place in the
-// page and of the inputs only: a rectangle composed alone has the bytes that it has as part of the whole
+// of the first; where vista UVs or imagery weigh otherwise in the next coarser page, it is composed as that
+// page's texels are, so that going from page to page shows no step. Each texel is a function of its place in
+// the page and of the inputs only: a rectangle composed alone has the bytes that it has as part of the whole
 // page. Source: Call of Duty talk, "Composition", "Compression", "Physical Textures".
 #pragma once
 
@@ -24,8 +24,8 @@
 
 namespace loam {
 
-// Of vista_weight (shaders/texture/vista.h).
-[[nodiscard]] double vista_log2_begin(const GroundSettings& ground);
+// Of vista_weight (shaders/texture/vista.h), for what begins at a distance.
+[[nodiscard]] double far_log2_begin(double distance_m);
 
 struct ComposeJob {
     PageId page;
@@ -64,7 +64,12 @@ class Composer {
              const TextureLayout& layout, const PageTextures& textures);
     [[nodiscard]] Result<gpu::Pipeline> material_pipeline(int kind) const;
     [[nodiscard]] Placed prepare(const ComposeJob& job, glm::ivec2 scratch_min);
-    [[nodiscard]] float vista_of(const PageId& page) const;
+    // What weighs by the distance that a page's texels are meant for.
+    struct FarWeights {
+        float vista = 0, imagery = 0;
+        bool operator==(const FarWeights&) const = default;
+    };
+    [[nodiscard]] FarWeights far_of(const PageId& page) const;
     [[nodiscard]] std::optional<ComposeJob> second_mip(const ComposeJob& job) const;
     Status cmd_batch(gpu::FrameRing& ring, gpu::Commands& commands, std::vector<Placed>& batch,
                      PageAtlas& atlas);
@@ -88,13 +93,14 @@ class Composer {
     gpu::Image scratch_;  // see shaders/texture/page_format.h
     gpu::Buffer blocks_;  // of compressed formats
     gpu::Sampler nearest_;
-    // By one layer only (1), transitions (2) and vista UVs (4): a square of 8 texels runs the one for what is
-    // in it.
+    // By one layer only (1), transitions (2) and what weighs by distance, vista UVs and imagery (4): a square
+    // of 8 texels runs the one for what is in it.
     static constexpr size_t kKinds = 8;
     std::array<gpu::Pipeline, kKinds> materials_;
     gpu::Pipeline encode_[2];  // by mip; mip 0 of uncompressed pages is a copy
     std::optional<DecalPasses> decals_;
-    std::array<bool, 4> features_{};  // tile hiding, distortion, transitions, vista: of the pipelines
+    std::array<bool, 5>
+        features_{};  // tile hiding, distortion, transitions, vista, imagery: of the pipelines
 };
 
 }  // namespace loam

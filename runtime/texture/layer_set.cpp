@@ -306,6 +306,7 @@ Status LayerSet::take_settings(gpu::FrameRing& ring, const ProjectSettings& proj
 
     const GroundSettings& settings = project.ground;
     ground = settings;
+    imagery = project.imagery;
     const bool wanted = settings.distortion_amplitude_m > 0;
     if (!wanted) distortion = {};
     if (!wanted || distortion) return {};

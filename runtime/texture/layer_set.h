@@ -30,7 +30,9 @@ class LayerSet {
     void fill_place(int layer, shared::LayerPlace& place) const;
     // Rectangles of pages are aligned to so many texels: blocks of both mips, or what a second mip composed
     // for itself needs.
-    [[nodiscard]] int rect_texels() const { return ground.has_vista() ? 16 : 8; }
+    [[nodiscard]] int rect_texels() const { return changes_afar() ? 16 : 8; }
+    // Something weighs by the distance that a page's texels are meant for.
+    [[nodiscard]] bool changes_afar() const { return ground.has_vista() || imagery.is_on(); }
     [[nodiscard]] bool is_transition(uint32_t layer) const { return blends_[layer].first != layer; }
 
     gpu::Image albedo_reveal;           // RGBA8_SRGB view where possible, else UNORM: sampled in linear light
@@ -40,6 +42,7 @@ class LayerSet {
     gpu::Sampler smooth_sampler;        // blends mips, for direct shading at rest
     gpu::Image distortion;              // R16G16_SFLOAT (distortion.h); none without distortion
     GroundSettings ground;
+    ImagerySettings imagery;
     std::vector<LayerEntry> entries;  // the list that was taken last
     // What a shader binds as its distortion map: any texture where there is none.
     [[nodiscard]] gpu::Image& distortion_map() { return distortion ? distortion : albedo_reveal; }

@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "runtime/base/srgb.h"
 #include "runtime/document/document.h"
 #include "runtime/maps/height_compose.h"
 #include "runtime/texture/layer_set.h"
@@ -13,10 +14,6 @@
 namespace loam {
 
 namespace {
-
-float linear(double srgb) {
-    return float(srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4));
-}
 
 float phase_of(double repeats) {
     return float(repeats - std::floor(repeats));
@@ -38,7 +35,8 @@ double set_material(const Document& document, const LayerSet& layers, const Deca
     }
     out.tiles_per_m = float(1.0 / tile_m);
     out.lod_bias = float(std::log2(layers.size_texels / tile_m));
-    out.colour = {linear(m.colour.x), linear(m.colour.y), linear(m.colour.z)};
+    out.colour = {float(linear_of_srgb(m.colour.x)), float(linear_of_srgb(m.colour.y)),
+                  float(linear_of_srgb(m.colour.z))};
     out.gloss = float(m.gloss);
     out.metalness = float(m.metalness);
     out.opacity = float(m.opacity);

@@ -191,7 +191,9 @@ void VirtualTexture::Impl::cmd_direct(gpu::Commands& commands, const TextureView
         d.distortion_reach = float(ground.distortion_amplitude_m / map.spacing_m(0));
         d.distortion_lod_bias = float(std::log2(kDistortionTexels / ground.distortion_period_m));
     }
-    d.vista_log2_begin = float(vista_log2_begin(ground));
+    d.vista_log2_begin = float(far_log2_begin(ground.vista_distance_m));
+    d.imagery_log2_begin = float(far_log2_begin(layers.imagery.distance_m));
+    d.imagery_strength = float(layers.imagery.strength);
     for (int level = 0; level < d.level_count; ++level)
         d.levels[level] = {int(map.level_offset(level)), map.pages_x(level), map.pages_y(level), 0};
     std::vector<shared::LayerPlace> places;

@@ -12,6 +12,7 @@ layout(constant_id = 2) const bool kTileHiding = false;
 layout(constant_id = 3) const bool kDistortion = false;
 layout(constant_id = 4) const bool kTransitions = false;
 layout(constant_id = 5) const bool kVista = false;
+layout(constant_id = 6) const bool kImagery = false;
 const bool kSmoothMips = false;
 
 layout(binding = 0) uniform sampler2DArray layer_albedo;
@@ -24,6 +25,7 @@ layout(binding = 6, rgba8) uniform writeonly image2DArray scratch;
 layout(binding = 7, scalar) readonly buffer Rects { ComposeRect rects[]; };
 layout(binding = 8, scalar) readonly buffer Tiles { ComposeTile tiles[]; };
 layout(binding = 9) uniform sampler2DArray distortion_map;
+layout(binding = 10) uniform sampler2DArray imagery_pages;
 layout(push_constant, scalar) uniform Push { ComposePush push; };
 
 ComposeRect rect;
@@ -33,6 +35,8 @@ ComposeRect rect;
 #define MATERIAL_METAL layer_metal
 #define MATERIAL_DISTORTION distortion_map
 #define MATERIAL_PLACE(layer) places[rect.first_place + (layer)]
+#define MATERIAL_IMAGERY imagery_pages
+#include "shaders/texture/imagery.glsl"
 #include "shaders/texture/material.glsl"
 
 void main() {
@@ -74,6 +78,7 @@ void main() {
     c.position = position;
     c.log2_texel = 0.0;
     c.vista = rect.vista;
+    c.imagery = kImagery ? imagery_at(place, int(rect.index_slot)) * rect.imagery : vec4(0);
     MaterialSample m = evaluate_material(c);
 
     ivec2 target = rect.scratch_min + at;

@@ -39,7 +39,8 @@ struct ComposeRect {
     float distortion_scale;
     float distortion_reach; // index texels of the level
     float distortion_lod;
-    float vista;    // weight of the magnified lookup; above 0 only in squares of that kind
+    float vista;    // weight of the magnified lookup; as imagery's above 0 only in squares of that kind
+    float imagery;  // weight of the imagery's colours
     ivec2 mip_min;  // where the second mip lies in scratch as a rectangle composed for itself; x < 0: it is
                     // the mean
     uint first_place;    // of the rectangle's layer places

@@ -12,9 +12,10 @@
 // | +5 | layers' albedo+reveal, sampler2DArray | LayerSet::albedo_reveal, LayerSet::sampler |
 // | +6 | layers' normal+gloss+occlusion | LayerSet::normal_gloss_occlusion, LayerSet::sampler |
 // | +7 | layers' metalness | LayerSet::metalness, LayerSet::sampler |
+// | +12 | imagery pages, sampler2DArray | IndexMap::imagery(), VirtualTexture::nearest_sampler() |
 // | +9 | distortion map, sampler2DArray | LayerSet::distortion_map(), LayerSet::sampler |
 // Specialisation constants: 21 where a layer has metal (LayerSet::has_metal), 40 tile hiding, 41 distortion,
-// 42 transitions, 43 layers blended between their mips (LayerSet::smooth_sampler), 44 vista UVs, 31 the optional channels
+// 42 transitions, 43 layers blended between their mips (LayerSet::smooth_sampler), 44 vista UVs, 45 imagery, 31 the optional channels
 // (page_channels.glsl).
 //
 //     MaterialSample m = direct_material(rel.xy, log2_footprint, log2_distance_texel);
@@ -35,6 +36,7 @@ layout(constant_id = 41) const bool kDistortion = false;
 layout(constant_id = 42) const bool kTransitions = false;
 layout(constant_id = 43) const bool kSmoothMips = false;
 layout(constant_id = 44) const bool kVista = false;
+layout(constant_id = 45) const bool kImagery = false;
 const bool kOneLayer = false;
 layout(binding = DIRECT_FIRST_SLOT + 0, scalar) readonly buffer DirectParamsBuffer { DirectParams direct; };
 layout(binding = DIRECT_FIRST_SLOT + 1, scalar) readonly buffer DirectPlaces { LayerPlace direct_places[]; };
@@ -45,12 +47,15 @@ layout(binding = DIRECT_FIRST_SLOT + 5) uniform sampler2DArray direct_albedo;
 layout(binding = DIRECT_FIRST_SLOT + 6) uniform sampler2DArray direct_normal;
 layout(binding = DIRECT_FIRST_SLOT + 7) uniform sampler2DArray direct_metal;
 layout(binding = DIRECT_FIRST_SLOT + 9) uniform sampler2DArray direct_distortion;
+layout(binding = DIRECT_FIRST_SLOT + 12) uniform sampler2DArray direct_imagery;
 
 #define MATERIAL_ALBEDO direct_albedo
 #define MATERIAL_NORMAL direct_normal
 #define MATERIAL_METAL direct_metal
 #define MATERIAL_DISTORTION direct_distortion
 #define MATERIAL_PLACE(layer) direct_places[layer]
+#define MATERIAL_IMAGERY direct_imagery
+#include "shaders/texture/imagery.glsl"
 #include "shaders/texture/material.glsl"
 
 MaterialSample direct_material(vec2 rel_m, float log2_footprint, float log2_distance_texel) {
@@ -99,6 +104,10 @@ MaterialSample direct_material(vec2 rel_m, float log2_footprint, float log2_dist
     c.position = at_m;
     c.log2_texel = log2_footprint;
     c.vista = vista_weight(log2_distance_texel, direct.vista_log2_begin);
+    c.imagery = vec4(0);
+    if (kImagery)
+        c.imagery = imagery_at(vec2(local) + c.from_vertex, base.z) *
+                    (direct.imagery_strength * vista_weight(log2_distance_texel, direct.imagery_log2_begin));
     return evaluate_material(c);
 }
 #endif

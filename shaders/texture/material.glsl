@@ -6,7 +6,7 @@
 //   MATERIAL_DISTORTION                                the distortion map, a sampler2DArray (any one where kDistortion is false)
 //   MATERIAL_PLACE(layer)                              the LayerPlace of a layer
 //   kOneLayer, kHasMetal, kTileHiding, kDistortion,
-//   kTransitions, kVista, kSmoothMips                  constants (specialisation or not); the last needs a sampler that blends mips
+//   kTransitions, kVista, kImagery, kSmoothMips                  constants (specialisation or not); the last needs a sampler that blends mips
 #ifndef LOAM_TEXTURE_MATERIAL_GLSL
 #define LOAM_TEXTURE_MATERIAL_GLSL
 #include "shaders/texture/compose_io.h"
@@ -50,6 +50,7 @@ struct MaterialCorners {
     vec2 position;      // what MATERIAL_PLACE scales
     float log2_texel;   // added to a place's lod_bias
     float vista;        // weight of the magnified lookup (vista.h), with kVista
+    vec4 imagery;       // linear colours times their weight, and the weight, with kImagery
 };
 
 // How far the lookup of index and tint moves, -1 … 1 of the reach. Source: Call of Duty talk, "Distortion".
@@ -163,6 +164,10 @@ MaterialSample evaluate_material(MaterialCorners c) {
             precise vec4 next_channels = channels * (1.0 - cover) + here * cover;
             channels = next_channels;
         }
+    }
+    if (kImagery) { // the layers' relief stays
+        precise vec3 far = albedo * (1.0 - c.imagery.a) + c.imagery.rgb;
+        albedo = far;
     }
     material.albedo = albedo;
     material.normal = vec2(layer_decode_signed(surface.x), layer_decode_signed(surface.y));

@@ -99,6 +99,8 @@ struct DirectParams {
     float distortion_reach; // texels of level 0
     float distortion_lod_bias; // log2 of the distortion's texels a metre
     float vista_log2_begin;    // of vista_weight
+    float imagery_log2_begin;  // likewise, of the imagery's colours
+    float imagery_strength;
     ivec4 levels[kMaxIndexLevels]; // x: first entry in the page table, y: pages x, z: pages y, w: unused
 };
 

@@ -8,6 +8,7 @@
 
 #include <glm/mat4x4.hpp>
 
+#include "runtime/document/imagery.h"
 #include "shaders/frame/frame_io.h"
 #include "tests/gpu/plain_composer.h"
 #include "tests/gpu/texture_ask.h"
@@ -148,6 +149,95 @@ TEST_F(ComposerTest, RoughLayersAreWithinTheFiltersTolerance) {
         EXPECT_LT(double(d.above_one), 0.02 * double(d.count));
         EXPECT_EQ(compared.turns.size(), ground.tile_hiding ? 16u : 1u) << "every turn was seen";
     }
+}
+
+// Imagery of random colours and cover, finer than any page, with levels of its own.
+void lay_imagery(World& w, PlainWorld& plain, double strength, double distance_m) {
+    ProjectSettings settings = w.document().settings();
+    const ImageryShape shape = imagery_shape(settings, 0.01);
+    plain.imagery_width = shape.width;
+    plain.imagery_height = shape.height;
+    for (int i = 0; i < shape.width * shape.height; ++i) {
+        const auto byte = [&] { return uint8_t(w.fixture.uniform(0, 255)); };
+        plain.imagery_texels.push_back(
+            {byte(), byte(), byte(), uint8_t(w.fixture.uniform(0, 3) == 0 ? 0 : byte())});
+    }
+    std::filesystem::create_directories(w.document().folder() / "imagery");
+    auto writer = need(ImageryWriter::create(w.document().folder() / "imagery/random.imagery", shape));
+    std::vector<glm::vec4> row(size_t(shape.width));
+    for (int y = shape.height - 1; y >= 0; --y) {
+        for (int x = 0; x < shape.width; ++x) {
+            const auto& t = plain.imagery_texels[size_t(y) * size_t(shape.width) + size_t(x)];
+            const double cover = t[3] / 255.0;
+            row[size_t(x)] = glm::vec4(linear_of(t[0] / 255.0) * cover, linear_of(t[1] / 255.0) * cover,
+                                       linear_of(t[2] / 255.0) * cover, cover);
+        }
+        need(writer->append_row(row));
+    }
+    need(writer->finish());
+    settings.imagery = plain.imagery = {"imagery/random.imagery", strength, distance_m};
+    need(w.document().change_settings(settings));
+    need(w.index->take_settings());
+    need(w.layers->take_settings(*w.ring, settings));
+    need(w.texture->take_settings());
+}
+
+// Pages of full weight, of some and of none, where the layers are known to a byte; laid over a living world.
+TEST_F(ComposerTest, ImageryIsWithinOneStepOfThePlainComposer) {
+    World w(small_desc(PageFormat::rgba8), true, {.layers = 9, .ground = everything_on()});
+    const RandomMap map = write_random_map(w);
+    PlainWorld plain = plain_world(w, map, true);
+    w.want_some_pages();
+    w.run_frames(14);
+    lay_imagery(w, plain, 0.8, 60);
+    w.want_some_pages();
+    w.run_frames(40);
+    EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
+    const int side = small_desc(PageFormat::rgba8).pages_per_side;
+    const std::vector<uint32_t> atlas = w.read_u32(w.texture->atlas(0));
+    const int finest = w.texture->layout().default_log2_width;
+    int weighted = 0;
+    for (const auto& [page, level] : {std::pair<PageId, int>{{{true, 1, 1}, 6, 20, 31}, 0},
+                                      {{{true, 1, 1}, 1, 0, 0}, 0},
+                                      {{{true, 1, 1}, 0, 0, 0}, 0},
+                                      {{{}, finest - 1, 0, 0}, 1},
+                                      {{{}, finest - 2, 0, 0}, 2}}) {
+        const int place = w.texture->place_of(page);
+        ASSERT_GE(place, 0) << "depth " << page.depth;
+        const WorldRect square = w.texture->layout().square(page);
+        const double texel_m = w.texture->layout().texel_m(page);
+        double worst = 0, weight = 0;
+        for (int y = 0; y < kPageTexels; ++y)
+            for (int x = 0; x < kPageTexels; ++x) {
+                const glm::dvec2 world(square.min_x + (x - kPageBorder + 0.5) * texel_m,
+                                       square.min_y + (y - kPageBorder + 0.5) * texel_m);
+                weight = std::max(weight, plain_imagery(plain, world, texel_m, level).w);
+                const auto wanted = stored_texel(plain_material(plain, world, texel_m, level));
+                const uint32_t got =
+                    atlas[size_t(place / side * kPageTexels + y) * size_t(side * kPageTexels) +
+                          size_t(place % side * kPageTexels + x)];
+                for (size_t c = 0; c < 3; ++c)
+                    worst = std::max(worst, std::abs(double(got >> (8 * c) & 0xff) - wanted[0][c]));
+            }
+        std::printf("imagery, texel %.0f mm, level %d: weight up to %.2f, worst %.2f/255\n", texel_m * 1000,
+                    level, weight, worst);
+        // The imagery's levels are bytes; dark ones are a step and a half of a page's root.
+        EXPECT_LE(worst, level == 0 ? 1.01 : 2.0);
+        weighted += weight > 0;
+    }
+    EXPECT_GE(weighted, 3);
+    EXPECT_LT(weighted, 5) << "near the camera it costs nothing and shows nothing";
+    // Taken away, every page is as it was before.
+    ProjectSettings settings = w.document().settings();
+    settings.imagery = {};
+    need(w.document().change_settings(settings));
+    need(w.index->take_settings());
+    need(w.layers->take_settings(*w.ring, settings));
+    need(w.texture->take_settings());
+    w.want_some_pages();
+    w.run_frames(40);
+    EXPECT_EQ(need(w.texture->count_stale_pages(*w.ring)), 0u);
+    EXPECT_NE(w.read_u32(w.texture->atlas(0)), atlas);
 }
 
 // The comparisons above can fail: a reference that is not told of a setting is far off.

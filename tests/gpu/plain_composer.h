@@ -70,6 +70,10 @@ struct PlainWorld {
     GroundSettings ground;
     std::vector<std::vector<glm::u16vec2>> distortion = make_distortion();
     std::map<int, PlainTransition> transitions{};  // by layer
+    ImagerySettings imagery{};
+    // Of squares of half an index spacing, rows from the south.
+    int imagery_width = 0, imagery_height = 0;
+    std::vector<std::array<uint8_t, 4>> imagery_texels{};
 };
 
 // albedo r g b linear, normal x y, gloss, occlusion as stored; reveal
@@ -135,10 +139,42 @@ inline double plain_cover(double alpha, double reveal) {
     return std::clamp((alpha * (1 + kSoftness) - (1 - reveal)) / kSoftness, 0.0, 1.0);
 }
 
-// How much of the magnified lookup is seen in texels that are meant for so far away: 5 feet a millimetre.
+// How much is seen of what begins at a distance, in texels that are meant for so far away: 5 feet a
+// millimetre.
+inline double plain_far(double begin_m, double texel_m) {
+    return std::clamp(std::log2(texel_m * 1524 / begin_m) / 2, 0.0, 1.0);
+}
+
 inline double plain_vista(const GroundSettings& g, double texel_m) {
-    if (g.vista_scale <= 1) return 0;
-    return std::clamp(std::log2(texel_m * 1524 / g.vista_distance_m) / 2, 0.0, 1.0);
+    return g.vista_scale <= 1 ? 0 : plain_far(g.vista_distance_m, texel_m);
+}
+
+// Linear colour and weight of the imagery at a place: each level the mean of two by two of the one below, by
+// cover, kept as bytes; between the centres of its texels.
+inline glm::dvec4 plain_imagery(const PlainWorld& w, glm::dvec2 world, double texel_m, int level) {
+    if (!w.imagery.is_on()) return glm::dvec4(0);
+    const int side = 1 << level;
+    const auto texel = [&](int x, int y) {
+        glm::dvec4 sum(0);
+        x = std::clamp(x, 0, (w.imagery_width - 1) / side);
+        y = std::clamp(y, 0, (w.imagery_height - 1) / side);
+        double count = 0;
+        for (int j = y * side; j < std::min((y + 1) * side, w.imagery_height); ++j)
+            for (int i = x * side; i < std::min((x + 1) * side, w.imagery_width); ++i, ++count) {
+                const auto& t = w.imagery_texels[size_t(j) * size_t(w.imagery_width) + size_t(i)];
+                const double cover = t[3] / 255.0;
+                sum += glm::dvec4(linear_of(t[0] / 255.0) * cover, linear_of(t[1] / 255.0) * cover,
+                                  linear_of(t[2] / 255.0) * cover, cover);
+            }
+        return sum / count;
+    };
+    const glm::dvec2 at = world / (kIndexSpacing_m / 2 * side) - 0.5, corner = glm::floor(at),
+                     f = at - corner;
+    glm::dvec4 sum(0);
+    for (int k = 0; k < 4; ++k)
+        sum += (k & 1 ? f.x : 1 - f.x) * (k & 2 ? f.y : 1 - f.y) *
+               texel(int(corner.x) + (k & 1), int(corner.y) + (k >> 1));
+    return sum * (w.imagery.strength * plain_far(w.imagery.distance_m, texel_m));
 }
 
 // One layer's textures at a place, turned as the section says.
@@ -220,6 +256,8 @@ inline Channels plain_material(const PlainWorld& w, glm::dvec2 world, double tex
         for (size_t k = 0; k < 7; ++k) shown[k] += (c[k] - shown[k]) * cover;
         lowest = false;
     }
+    const glm::dvec4 far = plain_imagery(w, world, texel_m, level);
+    for (int k = 0; k < 3; ++k) shown[size_t(k)] = shown[size_t(k)] * (1 - far.w) + far[k];
     return shown;
 }
 

@@ -24,7 +24,8 @@ inline std::vector<Answer> ask(World& w, const char* shader, const std::vector<Q
     if (direct) bindings.push_back(gpu::storage_buffer(4));
     for (uint32_t slot = direct ? 5 : 4; slot < (direct ? 10u : 9u); ++slot)
         bindings.push_back(gpu::sampled_image(slot));
-    if (direct) bindings.push_back(gpu::sampled_image(11));
+    for (uint32_t slot : {11u, 14u})
+        if (direct) bindings.push_back(gpu::sampled_image(slot));
     auto pipeline = need(gpu::Pipeline::create(
         device, gpu::ComputeDesc{.name = "ask",
                                  .shader = shader,
@@ -35,7 +36,8 @@ inline std::vector<Answer> ask(World& w, const char* shader, const std::vector<Q
                                                {40, w.layers->ground.tile_hiding},
                                                {41, w.layers->ground.distortion_amplitude_m > 0},
                                                {42, w.layers->has_transitions},
-                                               {44, w.layers->ground.has_vista()}}}));
+                                               {44, w.layers->ground.has_vista()},
+                                               {45, w.layers->imagery.is_on()}}}));
     auto answers = need(gpu::Buffer::create(device, {.name = "answers",
                                                      .size_bytes = queries.size() * sizeof(Answer),
                                                      .usage = VK_BUFFER_USAGE_STORAGE_BUFFER_BIT}));
@@ -52,6 +54,7 @@ inline std::vector<Answer> ask(World& w, const char* shader, const std::vector<Q
                                    {w.index->page_table(), gpu::Access::compute_sampled},
                                    {w.index->indices(), gpu::Access::compute_sampled},
                                    {w.index->tints(), gpu::Access::compute_sampled},
+                                   {w.index->imagery(), gpu::Access::compute_sampled},
                                    {w.layers->albedo_reveal, gpu::Access::compute_sampled},
                                    {w.layers->normal_gloss_occlusion, gpu::Access::compute_sampled},
                                    {w.layers->metalness, gpu::Access::compute_sampled},
@@ -66,7 +69,8 @@ inline std::vector<Answer> ask(World& w, const char* shader, const std::vector<Q
                           {7, w.layers->albedo_reveal.view(), w.layers->sampler},
                           {8, w.layers->normal_gloss_occlusion.view(), w.layers->sampler},
                           {9, w.layers->metalness.view(), w.layers->sampler},
-                          {11, w.layers->distortion_map().view(), w.layers->sampler}});
+                          {11, w.layers->distortion_map().view(), w.layers->sampler},
+                          {14, w.index->imagery().view(), t.nearest_sampler()}});
         c.push(pipeline, uint32_t(queries.size()));
         c.dispatch(uint32_t(queries.size() + 63) / 64);
     } else {

@@ -10,6 +10,7 @@
 #include "editor/packer/error_metrics.h"
 #include "editor/packer/map_files.h"
 #include "editor/packer/normal_maps.h"
+#include "runtime/base/srgb.h"
 
 namespace loam {
 namespace {

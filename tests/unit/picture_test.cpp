@@ -1,4 +1,5 @@
 #include "editor/picture.h"
+#include "runtime/base/srgb.h"
 
 #include <cmath>
 
@@ -13,7 +14,7 @@ Picture flat(int width, int height, uint8_t value) {
 
 TEST(Picture, srgb_codes_survive_the_way_there_and_back) {
     for (int code = 0; code < 256; ++code)
-        EXPECT_EQ(srgb8_from_linear(linear_from_srgb8(static_cast<uint8_t>(code))), code);
+        EXPECT_EQ(srgb8_of_linear(linear_of_srgb8(static_cast<uint8_t>(code))), code);
 }
 
 TEST(Picture, black_and_white_average_to_middle_grey_in_linear_light) {

@@ -205,6 +205,7 @@ TEST(project, comes_back_as_it_was) {
                 .tile_hiding = true,
                 .vista_scale = 7.5,
                 .vista_distance_m = 1.0 / 3 + 40};
+    s.imagery = {"imagery/a \"b\".imagery", 1.0 / 3, 123.25};
     s.layers[1].channels = {0, 0.25, 0, 1.0 / 3};
     s.channels = {Channel::glint, Channel::scattering};
     ASSERT_TRUE(save_project(folder.path(), s).ok());
@@ -222,6 +223,7 @@ TEST(project, comes_back_as_it_was) {
     EXPECT_EQ(t.layers[1].channels, s.layers[1].channels);
     EXPECT_EQ(t.layers[0].channels, LayerEntry().channels);
     EXPECT_EQ(t.channels, s.channels);
+    EXPECT_EQ(t.imagery, s.imagery);
     EXPECT_EQ(t.height_samples_y, 207);
     EXPECT_EQ(t.ground, s.ground);
 }
@@ -250,6 +252,8 @@ TEST(project, errors_are_sentences_with_the_line) {
         {good + "[ground]\ndistortion_amplitude_m = 1.5\n", "must be 0 … 1 (index_spacing_m)"},
         {good + "[ground]\ndistortion_amplitude_m = nan\n", ":5: distortion_amplitude_m is nan"},
         {good + "[ground]\nvista_scale = 0.5\n", ":5: vista_scale is 0.5, must be 1 … 64"},
+        {good + "[imagery]\nstrength = 1.5\n", ":5: strength is 1.5, must be 0 … 1"},
+        {good + "[imagery]\nfile = \"../a\"\n", "outside the project"},
         {good + "[ground]\nvista_distance_m = inf\n", ":5: vista_distance_m is inf"},
         {good + "[ground]\ndistortion_period_m = 0\n", ":5: distortion_period_m is 0"},
         {good + "[texture]\nchannels = [\"glow\"]\n",

@@ -334,6 +334,26 @@ def test_the_map_is_filled_and_taken_back(display, project, opened):
     closed_cleanly(window, display)
 
 
+def test_imagery_is_laid_over_the_map(display, project, opened, tmp_path):
+    Image.new("RGB", (64, 64), (200, 30, 200)).save(tmp_path / "pink.png")
+    window = opened()
+    away(display, window)
+    start = display.screenshot()
+    far = place(window, 0.5, 0.45)
+    for path in (tmp_path / "nowhere.png", tmp_path / "pink.png"):
+        display.key("ctrl+i")
+        display.xdotool("type", "--delay", 20, str(path))
+        display.key("Tab", "Tab", "Return")
+        window.settle()
+        assert (project / "imagery" / "pink.imagery").exists() == (path.stem == "pink"), window.last("message")
+    away(display, window)
+    laid = display.screenshot()
+    keep("imagery.png", laid)
+    assert changed_share(start, laid, far, half=30) > 0.5
+    assert 'file = "imagery/pink.imagery"' in (project / "project.toml").read_text()
+    closed_cleanly(window, display)
+
+
 def test_a_picture_becomes_a_stamp_and_is_laid(display, project, opened, tmp_path):
     bumps = Image.new("L", (64, 64))
     for y in range(64):
