@@ -1,5 +1,7 @@
 // The right panel: properties of the tool, layers, sun, history.
 #include <algorithm>
+#include <array>
+#include <cctype>
 #include <cmath>
 
 #include "editor/window/panels.h"
@@ -87,9 +89,11 @@ void gait_properties(ui::Ui& ui, GaitDesc& gait) {
                {.min = 1.2, .max = 6, .decimals = 1, .unit = "feet", .tooltip = "From one foot to the next"});
 }
 
-void share_slider(ui::Ui& ui, std::string_view label, double& share) {
+bool share_slider(ui::Ui& ui, std::string_view label, double& share) {
     double percent = share * 100;
-    if (ui::slider(ui, label, percent, {.min = 0, .max = 100, .decimals = 0, .unit = "%"})) share = percent / 100;
+    if (!ui::slider(ui, label, percent, {.min = 0, .max = 100, .decimals = 0, .unit = "%"})) return false;
+    share = percent / 100;
+    return true;
 }
 
 void decal_properties(ui::Ui& ui, App& app) {
@@ -189,19 +193,70 @@ void tool_properties(App& app, ui::Ui& ui) {
     ui.pop_id();
 }
 
+bool holds(std::string_view name, std::string_view searched) {
+    const auto same = [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+    };
+    return std::search(name.begin(), name.end(), searched.begin(), searched.end(), same) != name.end();
+}
+
+// The selected layer one place further in the palette, or before; its number in the map stays.
+void move_in_palette(App& app, int step) {
+    ProjectSettings settings = app.session.document().settings();
+    std::vector<int> order = palette_order(settings);
+    const auto at = std::find(order.begin(), order.end(), app.layer());
+    const auto to = at - order.begin() + step;
+    if (at == order.end() || to < 0 || to >= std::ssize(order)) return;
+    std::iter_swap(at, order.begin() + to);
+    settings.palette.clear();
+    for (const int layer : order) settings.palette.push_back(settings.layers[size_t(layer)].name);
+    app.change_settings(settings);
+}
+
+// What the layer's textures are laid with; the ground follows the sliders.
+void layer_properties(App& app, ui::Ui& ui) {
+    ProjectSettings settings = app.session.document().settings();
+    const int selected = app.layer();
+    if (selected < 0 || settings.layers[size_t(selected)].blend) return;
+    LayerEntry& entry = settings.layers[size_t(selected)];
+    ui::label(ui, fmt::format("{}, number {} in the map", entry.name, selected), ui::Tone::dim);
+    bool changed = ui::slider(ui, "Tile", entry.tile_m,
+                              {.min = 0.1,
+                               .max = 100,
+                               .decimals = 2,
+                               .unit = "m",
+                               .logarithmic = true,
+                               .tooltip = "Metres of ground that its textures cover before they repeat"})
+                       .changed;
+    constexpr std::array<std::string_view, kChannelNames.size()> kLabels = {"Scattering", "Heat", "Emissive",
+                                                                            "Glint"};
+    for (const Channel channel : settings.channels)
+        changed |= share_slider(ui, kLabels[size_t(channel)], entry.channels[size_t(channel)]);
+    if (changed) app.change_settings(settings);
+    ui.push_disabled(!app.layer_search.empty());
+    if (ui::button(ui, "Earlier in the palette")) move_in_palette(app, -1);
+    if (ui::button(ui, "Later in the palette")) move_in_palette(app, 1);
+    ui.pop_disabled();
+}
+
 void layer_palette(App& app, ui::Ui& ui) {
     if (app.layer_names.empty()) ui::label(ui, "The project has no layers", ui::Tone::dim);
+    ui::text_field(ui, "##search", app.layer_search,
+                   {.placeholder = "Search layers", .icon = ui::Icon::search});
     const std::vector<LayerEntry>& entries = app.session.document().settings().layers;
     std::vector<ui::Tile> tiles;
-    std::vector<int> layers; // by tile: removed transitions have none
+    std::vector<int> layers;  // by tile
     int selected = -1;
-    for (size_t i = 0; i < app.layer_names.size(); ++i) {
-        if (entries[i].blend && entries[i].blend->removed) continue;
-        if (int(i) == app.layer()) selected = int(layers.size());
-        layers.push_back(int(i));
-        tiles.push_back({.caption = app.layer_names[i],
-                         .texture = i < app.layer_pictures.size() ? app.layer_pictures[i] : 0});
+    for (const int i : palette_order(app.session.document().settings())) {
+        if (!holds(app.layer_names[size_t(i)], app.layer_search)) continue;
+        if (i == app.layer()) selected = int(layers.size());
+        layers.push_back(i);
+        tiles.push_back(
+            {.caption = app.layer_names[size_t(i)],
+             .texture = size_t(i) < app.layer_pictures.size() ? app.layer_pictures[size_t(i)] : 0});
     }
+    if (tiles.empty() && !app.layer_search.empty())
+        ui::label(ui, fmt::format("No layer has \"{}\" in its name", app.layer_search), ui::Tone::dim);
     if (ui::tile_grid(ui, "layers", tiles, selected, {.picture = 56})) {
         const size_t layer = size_t(layers[size_t(selected)]);
         app.set_layer(int(layer));
@@ -264,6 +319,7 @@ void build_properties(App& app, ui::Ui& ui) {
     const std::string title = fmt::format("{}##tool", tool_title(app.tools.tool));
     if (auto section = ui::section(ui, title)) tool_properties(app, ui);
     if (auto section = ui::section(ui, "Layers")) layer_palette(app, ui);
+    if (auto section = ui::section(ui, "Layer", ui::Section::closed)) layer_properties(app, ui);
     if (auto section = ui::section(ui, "Transitions", ui::Section::closed)) transition_properties(app, ui);
     if (auto section = ui::section(ui, "Ground")) ground_properties(app, ui);
     if (auto section = ui::section(ui, "Imagery", ui::Section::closed)) imagery_properties(app, ui);

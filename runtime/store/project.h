@@ -85,6 +85,9 @@ struct ProjectSettings {
     int32_t default_height_mm = 0;  // of pages never written
     uint16_t default_layer = 0;     // index of pages never written
     std::vector<LayerEntry> layers;
+    // Names in the order that a palette shows them; layers that it does not name come after. The numbers in
+    // the index map are places in `layers`, so that list is never put in another order.
+    std::vector<std::string> palette;
     LayerRoles roles;
     GroundSettings ground;
     ImagerySettings imagery;
@@ -98,6 +101,8 @@ struct ProjectSettings {
     }
 };
 
+// Numbers of the layers in the palette's order, removed transitions left out.
+[[nodiscard]] std::vector<int> palette_order(const ProjectSettings& settings);
 // The largest refine (≤ 6) for which level 0 is no finer than 0.25 m.
 [[nodiscard]] int default_refine(double height_spacing_m);
 

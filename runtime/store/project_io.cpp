@@ -226,6 +226,14 @@ ProjectSettings settings_of(const toml::table& root) {
                              number_of(n, "distance_m", kImageryDistance_m.min, kImageryDistance_m.max);
                      }}});
     };
+    const auto read_palette = [&](const toml::node& node) {
+        read_table(table_of(node, "palette"), "[palette]",
+                   {{"order", [&](const toml::node& n) {
+                         const auto* list = n.as_array();
+                         if (!list) refuse(n, "order must be a list of layer names");
+                         for (const toml::node& name : *list) s.palette.push_back(string_of(name, "order"));
+                     }}});
+    };
     const auto read_texture = [&](const toml::node& node) {
         read_table(table_of(node, "texture"), "[texture]",
                    {{"channels", [&](const toml::node& n) {
@@ -247,6 +255,7 @@ ProjectSettings settings_of(const toml::table& root) {
                 {"roles", read_roles},
                 {"ground", read_ground},
                 {"imagery", read_imagery},
+                {"palette", read_palette},
                 {"texture", read_texture},
                 {"layer", read_layers}});
     if (!has_samples) refuse(root, "height_samples is missing in [terrain]");
@@ -301,6 +310,12 @@ std::string text_of(const ProjectSettings& s) {
         out += fmt::format("\n[imagery]\nfile = {}\nstrength = {} # 0: off\ndistance_m = {}\n",
                            toml_text(s.imagery.file), toml_real(s.imagery.strength),
                            toml_real(s.imagery.distance_m));
+    if (!s.palette.empty()) {
+        std::string names;
+        for (const std::string& name : s.palette) names += (names.empty() ? "" : ", ") + toml_text(name);
+        out += fmt::format(
+            "\n[palette]\norder = [{}] # the order of [[layer]] is what the map's numbers mean\n", names);
+    }
     for (const LayerEntry& layer : s.layers) {
         out += fmt::format("\n[[layer]]\nname = {}\n", toml_text(layer.name));
         if (layer.blend) {

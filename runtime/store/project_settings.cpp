@@ -91,6 +91,22 @@ Status check_imagery(const ImagerySettings& imagery) {
 
 }  // namespace
 
+std::vector<int> palette_order(const ProjectSettings& settings) {
+    std::vector<int> order;
+    std::vector<bool> taken(settings.layers.size());
+    for (size_t i = 0; i < settings.layers.size(); ++i)
+        taken[i] = settings.layers[i].blend && settings.layers[i].blend->removed;
+    for (const std::string& name : settings.palette)
+        for (size_t i = 0; i < settings.layers.size(); ++i)
+            if (!taken[i] && settings.layers[i].name == name) {
+                taken[i] = true;
+                order.push_back(int(i));
+            }
+    for (size_t i = 0; i < settings.layers.size(); ++i)
+        if (!taken[i]) order.push_back(int(i));
+    return order;
+}
+
 int default_refine(double height_spacing_m) {
     int refine = 0;
     while (refine < 6 && height_spacing_m / double(2 << refine) >= 0.25) ++refine;

@@ -206,6 +206,7 @@ TEST(project, comes_back_as_it_was) {
                 .vista_scale = 7.5,
                 .vista_distance_m = 1.0 / 3 + 40};
     s.imagery = {"imagery/a \"b\".imagery", 1.0 / 3, 123.25};
+    s.palette = {s.layers[1].name, "t", "no \"such\" layer"};
     s.layers[1].channels = {0, 0.25, 0, 1.0 / 3};
     s.channels = {Channel::glint, Channel::scattering};
     ASSERT_TRUE(save_project(folder.path(), s).ok());
@@ -224,8 +225,20 @@ TEST(project, comes_back_as_it_was) {
     EXPECT_EQ(t.layers[0].channels, LayerEntry().channels);
     EXPECT_EQ(t.channels, s.channels);
     EXPECT_EQ(t.imagery, s.imagery);
+    EXPECT_EQ(t.palette, s.palette);
     EXPECT_EQ(t.height_samples_y, 207);
     EXPECT_EQ(t.ground, s.ground);
+}
+
+// The palette's order is its own: names that are gone or twice, removed transitions, layers that it lacks.
+TEST(project, palette_shows_every_layer_once_in_its_order) {
+    ProjectSettings s;
+    for (const char* name : {"a", "b", "c", "gone", "d"})
+        s.layers.push_back({name, std::string(name) + ".layer"});
+    EXPECT_EQ(palette_order(s), (std::vector<int>{0, 1, 2, 3, 4}));
+    s.layers[3].blend = LayerEntry::Blend{"a", "b", 0.5, true};
+    s.palette = {"d", "gone", "b", "d", "nowhere"};
+    EXPECT_EQ(palette_order(s), (std::vector<int>{4, 1, 0, 2}));
 }
 
 TEST(project, errors_are_sentences_with_the_line) {
@@ -254,6 +267,7 @@ TEST(project, errors_are_sentences_with_the_line) {
         {good + "[ground]\nvista_scale = 0.5\n", ":5: vista_scale is 0.5, must be 1 … 64"},
         {good + "[imagery]\nstrength = 1.5\n", ":5: strength is 1.5, must be 0 … 1"},
         {good + "[imagery]\nfile = \"../a\"\n", "outside the project"},
+        {good + "[palette]\norder = \"grass\"\n", ":5: order must be a list"},
         {good + "[ground]\nvista_distance_m = inf\n", ":5: vista_distance_m is inf"},
         {good + "[ground]\ndistortion_period_m = 0\n", ":5: distortion_period_m is 0"},
         {good + "[texture]\nchannels = [\"glow\"]\n",

@@ -334,6 +334,41 @@ def test_the_map_is_filled_and_taken_back(display, project, opened):
     closed_cleanly(window, display)
 
 
+def test_the_palette_is_searched_and_put_in_order(display, project, opened):
+    window = opened()
+    away(display, window)
+    x, y = 1180, 214  # the search field, under the head of the section Layers
+    display.click(x, y)
+    display.xdotool("type", "--delay", 20, "GRASS")
+    window.settle()
+    found = display.screenshot()
+    keep("palette_search.png", found)
+    display.click(1140, 375)  # the section Layer
+    window.settle()
+    display.click(x, y)
+    display.key("ctrl+a", "BackSpace")
+    window.settle()
+    keep("palette_layer.png", display.screenshot())
+    before = display.screenshot()
+    display.drag(1184, 629, 1230, 629)  # its tile: the ground follows
+    window.settle()
+    away(display, window)
+    assert changed_share(before, display.screenshot(), place(window, 0.5, 0.9), half=30) > 0.1
+    display.click(1145, 685)  # later in the palette
+    window.settle()
+    text = (project / "project.toml").read_text()
+    assert 'order = ["dry_grass", "grass", "forest_floor",' in text
+    assert text.index('name = "grass"') < text.index('name = "dry_grass"'), "the map's numbers mean the same layers"
+    display.click(1060, 275)  # the first one now, dry_grass
+    window.settle()
+    away(display, window)
+    display.click(*place(window, 0.5, 0.7))
+    window.wait_for("command")
+    (command,) = window.commands()
+    assert command["cmd"] == "paint" and command["layer"] == "dry_grass"
+    closed_cleanly(window, display)
+
+
 def test_imagery_is_laid_over_the_map(display, project, opened, tmp_path):
     Image.new("RGB", (64, 64), (200, 30, 200)).save(tmp_path / "pink.png")
     window = opened()
