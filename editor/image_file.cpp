@@ -281,6 +281,20 @@ Status write_caught(const std::filesystem::path& file, const OIIO::ImageSpec& sp
 
 }  // namespace
 
+float white_of(SampleKind kind) {
+    switch (kind) {
+        case SampleKind::unsigned_8:
+            return 255;
+        case SampleKind::unsigned_16:
+            return 65535;
+        case SampleKind::signed_16:
+            return 32767;
+        case SampleKind::floating:
+            break;
+    }
+    return 1;
+}
+
 Result<SampleImage> read_samples(const std::filesystem::path& file, int max_side, KeptChannels keep) {
     LOAM_TRY(check_readable(file));
     LOAM_TRY(check_png_chunks(file));

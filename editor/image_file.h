@@ -14,6 +14,9 @@ namespace loam {
 
 enum class SampleKind { unsigned_8, unsigned_16, signed_16, floating };
 
+// The value that is white, or whole.
+[[nodiscard]] float white_of(SampleKind kind);
+
 // What is kept of a picture: heights are its first channel, materials need all of them.
 enum class KeptChannels { first, up_to_four };
 

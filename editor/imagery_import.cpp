@@ -2,9 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <deque>
 
-#include "editor/image_file.h"
+#include "editor/row_mix.h"
 #include "runtime/base/srgb.h"
 #include "runtime/document/imagery.h"
 
@@ -14,73 +13,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What a texel of one axis is made of: samples from `first` on and their weights, which sum to 1.
-struct Mix {
-    int first = 0;
-    std::vector<float> weights;
-};
-
-// The mean of the samples that lie in the texel; where samples are wider than texels, between their centres.
-Mix mix_between(double from, double to, int samples) {
-    Mix mix;
-    if (to - from <= 1) {
-        const double at = (from + to) / 2 - 0.5;
-        const double low = std::floor(at);
-        const int last = samples - 1;
-        mix.first = std::clamp(int(low), 0, last);
-        const int second = std::clamp(int(low) + 1, 0, last);
-        if (second == mix.first)
-            mix.weights = {1};
-        else
-            mix.weights = {float(1 - (at - low)), float(at - low)};
-        return mix;
-    }
-    mix.first = std::clamp(int(std::floor(from)), 0, samples - 1);
-    const int end = std::clamp(int(std::ceil(to)), mix.first + 1, samples);
-    double sum = 0;
-    for (int i = mix.first; i < end; ++i) {
-        const double share = std::max(0.0, std::min(to, i + 1.0) - std::max(from, double(i)));
-        mix.weights.push_back(float(share));
-        sum += share;
-    }
-    if (sum <= 0) {  // beyond the picture's edge: its last sample
-        mix.weights.assign(mix.weights.size(), 0.0f);
-        mix.weights.back() = 1;
-        sum = 1;
-    }
-    for (float& weight : mix.weights) weight = float(weight / sum);
-    return mix;
-}
-
-// Of texels from the map's west or south; `extent_m` is the picture's.
-std::vector<Mix> axis_mixes(int texels, double spacing_m, double extent_m, int samples) {
-    std::vector<Mix> mixes;
-    for (int i = 0; i < texels; ++i) {
-        const double from = i * spacing_m / extent_m * samples;
-        const double to = std::min(double(samples), (i + 1) * spacing_m / extent_m * samples);
-        mixes.push_back(mix_between(from, std::max(from, to), samples));
-    }
-    return mixes;
-}
-
 // Samples to linear light times cover, and cover.
 class Decoder {
   public:
-    explicit Decoder(const ImageRows& rows) : channels_(size_t(rows.channel_count())), alpha_(rows.alpha_channel()) {
-        switch (rows.kind()) {
-            case SampleKind::unsigned_8:
-                white_ = 255;
-                break;
-            case SampleKind::unsigned_16:
-                white_ = 65535;
-                break;
-            case SampleKind::signed_16:
-                white_ = 32767;
-                break;
-            case SampleKind::floating:
-                white_ = 1;
-                break;
-        }
+    explicit Decoder(const ImageRows& rows)
+        : channels_(size_t(rows.channel_count())), alpha_(rows.alpha_channel()) {
+        white_ = white_of(rows.kind());
         const std::string& space = rows.color_space();
         const bool linear = space == "Linear" || space == "linear" || space == "scene_linear";
         is_linear_ = linear || (rows.kind() == SampleKind::floating && space != "sRGB");
@@ -118,47 +56,32 @@ class Decoder {
     bool is_linear_ = false, is_rgb_ = false;
 };
 
+// Of texels from the map's west; with `from_north` from its north.
+std::vector<PixelMix> texel_mixes(int texels, double spacing_m, double extent_m, int pixels,
+                                  bool from_north) {
+    std::vector<PixelMix> mixes;
+    for (int i = 0; i < texels; ++i) {
+        const double low_m = from_north ? extent_m - (texels - i) * spacing_m : i * spacing_m;
+        mixes.push_back(mix_between(std::max(0.0, low_m) / extent_m * pixels,
+                                    std::min(extent_m, low_m + spacing_m) / extent_m * pixels, pixels));
+    }
+    return mixes;
+}
+
 // The picture's rows become the map's, north first.
-Status write_rows(ImageRows& rows, Decoder& decode, const WorldRect& bounds, const ImageryShape& shape,
+Status write_rows(ImageRows& picture, Decoder& decode, const WorldRect& bounds, const ImageryShape& shape,
                   ImageryWriter& writer, const Progress& progress) {
-    const std::vector<Mix> columns = axis_mixes(shape.width, shape.spacing_m, bounds.max_x, rows.width());
-    const size_t channels = size_t(rows.channel_count());
-    std::deque<std::vector<glm::vec4>> held;  // rows of the picture, as wide as the map's
-    int first_held = 0;
-    std::vector<glm::vec4> texels(size_t(shape.width));
+    RowMixer mixer(picture, texel_mixes(shape.width, shape.spacing_m, bounds.max_x, picture.width(), false),
+                   texel_mixes(shape.height, shape.spacing_m, bounds.max_y, picture.height(), true),
+                   [&](const float* pixel) { return decode(pixel); });
     for (int y = shape.height - 1; y >= 0; --y) {
-        const double scale = rows.height() / bounds.max_y;
-        const double from = std::max(0.0, (bounds.max_y - (y + 1) * shape.spacing_m) * scale);
-        const double to = std::max(from, (bounds.max_y - y * shape.spacing_m) * scale);
-        const Mix mix = mix_between(from, to, rows.height());
-        for (; first_held < mix.first && !held.empty(); ++first_held) held.pop_front();
-        while (first_held + int(held.size()) < mix.first + int(mix.weights.size())) {
-            const auto row = rows.next();
-            if (!row.ok()) return row.error();
-            if (held.empty() && first_held < mix.first) {
-                ++first_held;
-                continue;
-            }
-            std::vector<glm::vec4>& out = held.emplace_back(size_t(shape.width));
-            std::vector<glm::vec4> decoded(size_t(rows.width()));
-            for (size_t x = 0; x < decoded.size(); ++x) decoded[x] = decode(row->data() + x * channels);
-            for (size_t x = 0; x < out.size(); ++x)
-                for (size_t k = 0; k < columns[x].weights.size(); ++k)
-                    out[x] += columns[x].weights[k] * decoded[size_t(columns[x].first) + k];
-        }
-        for (size_t x = 0; x < texels.size(); ++x) {
-            texels[x] = glm::vec4(0);
-            for (size_t k = 0; k < mix.weights.size(); ++k)
-                texels[x] += mix.weights[k] * held[size_t(mix.first - first_held) + k][x];
-        }
-        LOAM_TRY(writer.append_row(texels));
+        const auto row = mixer.next();
+        if (!row.ok()) return row.error();
+        LOAM_TRY(writer.append_row(*row));
         if (y % 64 == 0)
             LOAM_TRY(step_progress(progress, 1 - double(y) / shape.height, "reading the picture"));
     }
-    // What is cut short says so in its last rows.
-    for (int row = first_held + int(held.size()); row < rows.height(); ++row)
-        if (const auto rest = rows.next(); !rest.ok()) return rest.error();
-    return {};
+    return mixer.finish();
 }
 
 fs::path free_file(const fs::path& folder, std::string name) {
@@ -170,7 +93,8 @@ fs::path free_file(const fs::path& folder, std::string name) {
     return file;
 }
 
-void note_oddities(const ImageRows& rows, const Decoder& decoder, const WorldRect& bounds, AddedImagery& out) {
+void note_oddities(const ImageRows& rows, const Decoder& decoder, const WorldRect& bounds,
+                   AddedImagery& out) {
     const double aspect = (bounds.max_x / rows.width()) / (bounds.max_y / rows.height());
     if (aspect > 1.01 || aspect < 1 / 1.01)
         out.notes.push_back(fmt::format(
@@ -178,8 +102,7 @@ void note_oddities(const ImageRows& rows, const Decoder& decoder, const WorldRec
             bounds.max_x / rows.width(), bounds.max_y / rows.height()));
     if (!decoder.is_rgb()) out.notes.push_back("it has no colours: shown in grey");
     const int colours = rows.channel_count() - (rows.alpha_channel() >= 0 ? 1 : 0);
-    if (colours > 3)
-        out.notes.push_back(fmt::format("it has {} bands: the first three are shown", colours));
+    if (colours > 3) out.notes.push_back(fmt::format("it has {} bands: the first three are shown", colours));
     if (decoder.not_finite > 0)
         out.notes.push_back(
             fmt::format("{} pixels were not finite: the layers show there", decoder.not_finite));

@@ -25,8 +25,8 @@ struct AddedImagery {
     std::vector<std::string> notes;
 };
 
-// Writes imagery/NAME.imagery row by row and names it in project.toml, whole or not at all. The file of imagery that was there before
-// stays in the project's folder.
+// Writes imagery/NAME.imagery row by row and names it in project.toml, whole or not at all. The file of
+// imagery that was there before stays in the project's folder.
 [[nodiscard]] Result<AddedImagery> add_imagery(Document& document, const AddImageryRequest& request,
                                                const Progress& progress);
 

@@ -23,6 +23,19 @@ Json to_report(const Dirt& dirt) {
     return {{"height", rects(dirt.height)}, {"index", rects(dirt.index)}, {"texture", rects(dirt.texture)}};
 }
 
+Json to_report(const WeightsReport& r) {
+    Json shares = Json::array();
+    for (const auto& share : r.shares)
+        shares.push_back({{"layer", share.layer}, {"weight", share.weight}, {"texels", share.texels}});
+    return {{"texels", r.texels},
+            {"kept", r.kept},
+            {"unweighted", r.unweighted},
+            {"color_rms", r.color_rms},
+            {"color_rms_plain", r.color_rms_plain},
+            {"layers", std::move(shares)},
+            {"notes", r.notes}};
+}
+
 Json to_report(const Document::Statistics& s) {
     return {{"height_pages", s.height_pages},
             {"index_pages", s.index_pages},

@@ -14,6 +14,7 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json to_report(const ProjectSettings& settings);
 [[nodiscard]] Json to_report(const FrameStatistics& statistics);
 [[nodiscard]] Json to_report(const VirtualTexture::Statistics& statistics);
+[[nodiscard]] Json to_report(const WeightsReport& report);
 [[nodiscard]] Json memory_report(Session& session);  // needs a device
 
 }  // namespace loam

@@ -153,6 +153,15 @@ Result<AddedImagery> Session::add_imagery(const AddImageryRequest& request, cons
     return added;
 }
 
+Result<WeightsReport> Session::import_weights(const WeightsRequest& request, const Progress& progress) {
+    auto report = loam::import_weights(*document_, request, progress);
+    if (!report) return report;
+    const Dirt dirt{.height = {}, .index = {document_->bounds()}, .texture = {}};
+    if (renderer_) renderer_->on_dirt(dirt);
+    if (query_indices_) query_indices_->on_dirt(dirt.index);
+    return report;
+}
+
 Status Session::record_to(const std::filesystem::path& file) {
     auto recorder = std::make_unique<Recorder>();
     recorder->path = file;

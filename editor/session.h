@@ -10,6 +10,7 @@
 
 #include "editor/imagery_import.h"
 #include "editor/layer_import.h"
+#include "editor/weights_import.h"
 #include "runtime/base/result.h"
 #include "runtime/document/document.h"
 #include "runtime/frame/camera.h"
@@ -83,6 +84,8 @@ class Session {
     Result<AddedLayer> add_layer(const AddLayerRequest& request, const Progress& progress);
     // The same for imagery over the map.
     Result<AddedImagery> add_imagery(const AddImageryRequest& request, const Progress& progress);
+    // Replaces the index map (weights_import.h).
+    Result<WeightsReport> import_weights(const WeightsRequest& request, const Progress& progress);
     // Every command from now on is appended to this file, one JSON line each.
     Status record_to(const std::filesystem::path& file);
 

@@ -77,10 +77,7 @@ StampImage stamp_of(const SampleImage& image, double black, double white, AddedS
     stamp.heights.resize(texels);
     if (out.has_colors) stamp.colors.resize(3 * texels);
     if (has_alpha) stamp.cover.resize(texels);
-    const double alpha_white = image.kind == SampleKind::unsigned_8    ? 255
-                               : image.kind == SampleKind::unsigned_16 ? 65535
-                               : image.kind == SampleKind::signed_16   ? 32767
-                                                                       : 1;
+    const double alpha_white = white_of(image.kind);
     const auto share = [&](float sample) {
         return std::clamp((double(sample) - black) / (white - black), 0.0, 1.0);
     };

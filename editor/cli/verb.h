@@ -37,6 +37,7 @@ struct Verb {
 [[nodiscard]] Verb layer_verb();
 [[nodiscard]] Verb stamp_verb();
 [[nodiscard]] Verb imagery_verb();
+[[nodiscard]] Verb weights_verb();
 [[nodiscard]] Verb pack_verb();
 
 // --device, --validation, --quality, --format, --set: for every verb that renders.

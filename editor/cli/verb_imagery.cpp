@@ -20,12 +20,15 @@ Status run(const Args& args) {
     }();
     if (!added) return added.error();
     if (args.has("--json")) {
-        const nlohmann::ordered_json json = {
-            {"file", added->settings.file},           {"strength", added->settings.strength},
-            {"distance_m", added->settings.distance_m}, {"width", added->width},
-            {"height", added->height},                {"texel_m", added->shape.spacing_m},
-            {"levels", added->shape.level_count()},   {"bytes", added->size_bytes},
-            {"notes", added->notes}};
+        const nlohmann::ordered_json json = {{"file", added->settings.file},
+                                             {"strength", added->settings.strength},
+                                             {"distance_m", added->settings.distance_m},
+                                             {"width", added->width},
+                                             {"height", added->height},
+                                             {"texel_m", added->shape.spacing_m},
+                                             {"levels", added->shape.level_count()},
+                                             {"bytes", added->size_bytes},
+                                             {"notes", added->notes}};
         fmt::print("{}\n", json.dump(2));
         return {};
     }
@@ -39,17 +42,19 @@ Status run(const Args& args) {
 }  // namespace
 
 Verb imagery_verb() {
-    return {.name = "imagery",
-            .summary = "lays satellite or ortho imagery over the map as its far look",
-            .positionals = {{"PROJECT", "project folder; no window may have it open"},
-                            {"FILE", "any picture of any size: its corners are the map's, its top is north"}},
-            .options = {{"--strength", ValueKind::number, "S", "0 to 1: of its colours; default as it is, or 1"},
-                        {"--distance", ValueKind::number, "M",
-                         "metres from which it shows, alone from four times that on; default as it is, or 400"},
-                        {"--json", ValueKind::none, "", "print what was made as JSON"}},
-            .run = run,
-            .notes = "An alpha channel says where there is imagery. loam set PROJECT imagery.strength 0 turns it "
-                     "off, imagery.file \"\" takes it away; its file stays in the folder imagery."};
+    return {
+        .name = "imagery",
+        .summary = "lays satellite or ortho imagery over the map as its far look",
+        .positionals = {{"PROJECT", "project folder; no window may have it open"},
+                        {"FILE", "any picture of any size: its corners are the map's, its top is north"}},
+        .options = {{"--strength", ValueKind::number, "S", "0 to 1: of its colours; default as it is, or 1"},
+                    {"--distance", ValueKind::number, "M",
+                     "metres from which it shows, alone from four times that on; default as it is, or 400"},
+                    {"--json", ValueKind::none, "", "print what was made as JSON"}},
+        .run = run,
+        .notes =
+            "An alpha channel says where there is imagery. loam set PROJECT imagery.strength 0 turns it "
+            "off, imagery.file \"\" takes it away; its file stays in the folder imagery."};
 }
 
 }  // namespace loam::cli

@@ -432,6 +432,18 @@ void bind_edits(py::class_<Project>& c) {
         },
         "Lays a picture over the whole map as its far look; returns what was made of it.", py::arg("file"),
         py::arg("strength") = py::none(), py::arg("distance_m") = py::none());
+    c.def(
+        "import_weights",
+        [](Project& p, const std::string& folder, bool tint, bool transitions) {
+            WeightsReport report;
+            {
+                const py::gil_scoped_release release;
+                report = unwrap(p.session().import_weights({folder, tint, transitions}, keep_going));
+            }
+            return to_python(to_report(report));
+        },
+        "Makes the index map of pictures of weights named after layers; returns what was lost.",
+        py::arg("folder"), py::arg("tint") = true, py::arg("transitions") = true);
     c.def("add_layer", &add_layer,
           "Makes a layer of a folder of maps; returns its name, index, file and the packer's report.",
           py::arg("folder"), py::arg("name") = py::none(), py::arg("tile_m") = 2.0,

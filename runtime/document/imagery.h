@@ -1,6 +1,6 @@
-// Imagery over the map as texels of the index map's own grid, twice as fine: level L has texels of index_spacing_m / 2 · 2^L, so that an
-// index page and its imagery are one square.
-// Source: Leadwerks' virtual texture talk ("base map").
+// Imagery over the map as texels of the index map's own grid, twice as fine: level L has texels of
+// index_spacing_m / 2 · 2^L, so that an index page and its imagery are one square. Source: Leadwerks' virtual
+// texture talk ("base map").
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,8 @@
 
 namespace loam {
 
-// The shape that imagery of a map has whose source's texels are source_m wide: as fine, and no finer than the grid's level 0.
+// The shape that imagery of a map has whose source's texels are source_m wide: as fine, and no finer than the
+// grid's level 0.
 [[nodiscard]] ImageryShape imagery_shape(const ProjectSettings& settings, double source_m);
 
 class Imagery {
@@ -27,8 +28,9 @@ class Imagery {
     [[nodiscard]] static Result<std::unique_ptr<Imagery>> open(const std::filesystem::path& file,
                                                                const ProjectSettings& settings);
     [[nodiscard]] const ImageryShape& shape() const { return file_->shape(); }
-    // Texels of a level: red, green, blue (sRGB-encoded) and cover, low byte first; beyond the map the nearest inside. Where the file
-    // is coarser than the level they are interpolated. A tile that cannot be read has no cover, and is said once. Any thread.
+    // Texels of a level: red, green, blue (sRGB-encoded) and cover, low byte first; beyond the map the
+    // nearest inside. Where the file is coarser than the level they are interpolated. A tile that cannot be
+    // read has no cover, and is said once. Any thread.
     void read(int level, int x0, int y0, int width, int height, uint32_t* rgba) const;
 
   private:

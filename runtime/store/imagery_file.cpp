@@ -2,10 +2,10 @@
 // | --- | --- |
 // | 0–7 | "LOAMIMG1" |
 // | 8–23 | width and height in texels; spacing in metres, a double; all little endian |
-// | then | tiles in the order they were finished, each a zstd frame: red, green, blue, cover one after the other, each byte less |
-// |      | its neighbour on the left |
-// | then | the table, a zstd frame: 8 bytes of place and 4 of length a tile; level after level, rows from the south |
-// | last 20 | place (8) and length (4) of the table, "LOAMIMG1" |
+// | then | tiles in the order they were finished, each a zstd frame: red, green, blue, cover one after the
+// other, each byte less | |      | its neighbour on the left | | then | the table, a zstd frame: 8 bytes of
+// place and 4 of length a tile; level after level, rows from the south | | last 20 | place (8) and length (4)
+// of the table, "LOAMIMG1" |
 #include "runtime/store/imagery_file.h"
 
 #include <fcntl.h>
@@ -106,7 +106,7 @@ struct ImageryWriter::Impl {
     explicit Impl(ReplacedFile replaced) : file(std::move(replaced)) {}
 
     struct Level {
-        int next_row = 0;  // from the north: height - 1 … 0; -1: done
+        int next_row = 0;                // from the north: height - 1 … 0; -1: done
         std::vector<uint8_t> rows;       // of the row of tiles that is being filled, sRGB and cover
         std::vector<glm::vec4> waiting;  // an odd row that waits for the even one south of it
     };
@@ -185,7 +185,8 @@ Status ImageryWriter::Impl::write_tiles(int level, int tile_y) {
     for (int x = 0; x < across; ++x) {
         for (int y = 0; y < kImageryTile; ++y)
             std::memcpy(&tile[size_t(y) * kImageryTile * 4],
-                        &l.rows[(size_t(y) * size_t(across) + size_t(x)) * kImageryTile * 4], kImageryTile * 4);
+                        &l.rows[(size_t(y) * size_t(across) + size_t(x)) * kImageryTile * 4],
+                        kImageryTile * 4);
         planes_of(tile, planes);
         frame.clear();
         append_zstd_frame(planes, kZstdLevel, frame);
@@ -294,8 +295,7 @@ Status ImageryFile::read_tile(int level, int x, int y, std::span<uint8_t> rgba) 
     const uint8_t* entry =
         &f.table[(f.offsets[size_t(level)] + size_t(y) * size_t(across) + size_t(x)) * kEntryBytes];
     const uint32_t length = read_u32(entry + 8);
-    if (length > 2 * kTileBytes)
-        return error("{} is damaged: a tile of {} bytes", f.path.string(), length);
+    if (length > 2 * kTileBytes) return error("{} is damaged: a tile of {} bytes", f.path.string(), length);
     std::vector<uint8_t> frame(length), planes(kTileBytes);
     LOAM_TRY(f.read(read_u64(entry), frame));
     if (const Status status = read_zstd_frame(frame, planes); !status.ok())
