@@ -80,6 +80,11 @@ Json to_report(const ProjectSettings& s) {
               {"tile_hiding", s.ground.tile_hiding},
               {"vista_scale", s.ground.vista_scale},
               {"vista_distance_m", s.ground.vista_distance_m}}},
+            {"imagery",
+             {{"file", s.imagery.file},
+              {"strength", s.imagery.strength},
+              {"distance_m", s.imagery.distance_m}}},
+            {"palette", s.palette},
             {"channels", channels},
             {"layers", layers}};
 }
