@@ -335,7 +335,7 @@ Status add_transition_error(const BenchRequest& request, BenchTable& table) {
 Result<BenchReport> bench_materials(const BenchRequest& request) {
     auto device = gpu::Device::create(request.session.device);
     if (!device) return device.error();
-    BenchReport report(4);
+    BenchReport report(5);
     report[0].title = "A whole page of 8 m, RGBA8, and the picture against the reference (a mosaic of 4 m)";
     LOAM_TRY(add_costs(request, **device, report[0]));
     report[1].title = "Tile hiding: largest autocorrelation at half to one and a half tiles";
@@ -343,6 +343,8 @@ Result<BenchReport> bench_materials(const BenchRequest& request) {
     report[2].title = "A transition against the same blend authored at full resolution, albedo, by mip";
     LOAM_TRY(add_transition_error(request, report[2]));
     LOAM_TRY(add_vista_steps(request, **device, report[3]));
+    report[4].title = "Layers by an alpha mask each beside the index map: a whole page of 8 m, RGBA8";
+    LOAM_TRY(add_masks(request, **device, report[4]));
     return report;
 }
 

@@ -81,7 +81,8 @@ struct Stage {
     }
 };
 
-// A table of `bench materials`.
+// Tables of `bench materials`.
+Status add_masks(const BenchRequest& request, gpu::Device& device, BenchTable& table);
 Status add_vista_steps(const BenchRequest& request, gpu::Device& device, BenchTable& table);
 
 }  // namespace loam::bench

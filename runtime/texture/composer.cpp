@@ -131,7 +131,7 @@ Result<std::unique_ptr<Composer>> Composer::create(gpu::Device& device, const Do
     return composer;
 }
 
-Result<gpu::Pipeline> Composer::material_pipeline(int kind) const {
+Result<gpu::Pipeline> Composer::material_pipeline(int kind, bool masks) const {
     const bool one_layer = kind & kOneLayerKind;
     return gpu::Pipeline::create(
         device_,
@@ -140,7 +140,7 @@ Result<gpu::Pipeline> Composer::material_pipeline(int kind) const {
                          .bindings = {gpu::sampled_image(0), gpu::sampled_image(1), gpu::sampled_image(2),
                                       gpu::sampled_image(3), gpu::sampled_image(4), gpu::storage_buffer(5),
                                       gpu::storage_image(6), gpu::storage_buffer(7), gpu::storage_buffer(8),
-                                      gpu::sampled_image(9), gpu::sampled_image(10)},
+                                      gpu::sampled_image(9), gpu::sampled_image(10), gpu::sampled_image(11)},
                          .push_bytes = sizeof(shared::ComposePush),
                          .constants = {{0, one_layer},
                                        {1, layers_.has_metal},
@@ -149,6 +149,7 @@ Result<gpu::Pipeline> Composer::material_pipeline(int kind) const {
                                        {4, bool(kind & kTransitionKind)},
                                        {5, kind & kFarKind && layers_.ground.has_vista()},
                                        {6, kind & kFarKind && layers_.imagery.is_on()},
+                                       {7, masks},
                                        {31, textures_.placement}}});
 }
 
@@ -162,10 +163,19 @@ Status Composer::take_settings() {
         materials_[size_t(kind)] = {};
         if ((kind & kTransitionKind) && !layers_.has_transitions) continue;
         if ((kind & kFarKind) && !layers_.changes_afar()) continue;
-        auto made = material_pipeline(kind);
+        auto made = material_pipeline(kind, false);
         if (!made.ok()) return made.error();
         materials_[size_t(kind)] = std::move(*made);
     }
+    return {};
+}
+
+Status Composer::use_masks(LayerMasks* masks) {
+    masks_ = masks;
+    if (!masks) return {};
+    auto made = material_pipeline(0, true);
+    if (!made.ok()) return made.error();
+    mask_material_ = std::move(*made);
     return {};
 }
 
@@ -308,6 +318,7 @@ Status Composer::cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std:
     int shelf_height = 0;
     const int step = layers_.rect_texels();
     for (const ComposeJob& job : jobs) {
+        LOAM_CHECK(!masks_ || masks_->index_page == job.index_page, "masks are of one index page");
         const std::optional<ComposeJob> mip = second_mip(job);
         // Side by side, the second mip on the right.
         const int own_width = job.rect.width(), height = job.rect.height();
@@ -394,6 +405,7 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
             layers_.fill_place(int(layer), *out);
         }
     }
+    gpu::Image& masks = masks_ ? masks_->pages : index_.tints();
     auto pass = commands.pass("texture compose", {{scratch_, Access::compute_storage},
                                                   {layers_.albedo_reveal, Access::compute_sampled},
                                                   {layers_.normal_gloss_occlusion, Access::compute_sampled},
@@ -401,12 +413,13 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
                                                   {index_.indices(), Access::compute_sampled},
                                                   {index_.tints(), Access::compute_sampled},
                                                   {index_.imagery(), Access::compute_sampled},
-                                                  {layers_.distortion_map(), Access::compute_sampled}});
+                                                  {layers_.distortion_map(), Access::compute_sampled},
+                                                  {masks, Access::compute_sampled}});
     uint32_t first_tile = 0;
     for (size_t kind = 0; kind < work.kind_tiles.size(); first_tile += work.kind_tiles[kind++]) {
         const uint32_t tiles = work.kind_tiles[kind];
         if (tiles == 0) continue;
-        const gpu::Pipeline& pipeline = materials_[kind];
+        const gpu::Pipeline& pipeline = masks_ ? mask_material_ : materials_[kind];
         commands.bind(pipeline, {{0, layers_.albedo_reveal.view(), layers_.sampler},
                                  {1, layers_.normal_gloss_occlusion.view(), layers_.sampler},
                                  {2, layers_.metalness.view(), layers_.sampler},
@@ -417,7 +430,8 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
                                  {7, *work.rects.buffer, work.rects.offset, work.rects.size_bytes},
                                  {8, *work.tiles.buffer, work.tiles.offset, work.tiles.size_bytes},
                                  {9, layers_.distortion_map().view(), layers_.sampler},
-                                 {10, index_.imagery().view(), nearest_}});
+                                 {10, index_.imagery().view(), nearest_},
+                                 {11, masks.view(), nearest_}});
         commands.push(pipeline, shared::ComposePush{first_tile});
         commands.dispatch(tiles);
     }

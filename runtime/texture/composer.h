@@ -27,6 +27,14 @@ namespace loam {
 // Of vista_weight (shaders/texture/vista.h), for what begins at a distance.
 [[nodiscard]] double far_log2_begin(double distance_m);
 
+// Layers by an alpha mask each instead of the index map: the baseline, for one index page.
+// Source: Call of Duty talk, "Layer Masks".
+struct LayerMasks {
+    gpu::Image pages;  // R8_UNORM 136 x 136, one a layer
+    MapPage index_page;
+};
+inline constexpr int kMostMasks = 32;
+
 struct ComposeJob {
     PageId page;
     TexelRect rect;        // aligned to LayerSet::rect_texels
@@ -43,6 +51,8 @@ class Composer {
                                                     bool decals);
     // After LayerSet::take_settings: the pipelines for what is on now.
     Status take_settings();
+    // What cmd_compose composes of from now on, in pages within masks.index_page; null: the index map.
+    Status use_masks(LayerMasks* masks);
     Status cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const ComposeJob> jobs,
                        PageAtlas& atlas);
 
@@ -62,7 +72,7 @@ class Composer {
     struct Work;
     Composer(gpu::Device& device, const Document& document, IndexMap& index, LayerSet& layers,
              const TextureLayout& layout, const PageTextures& textures);
-    [[nodiscard]] Result<gpu::Pipeline> material_pipeline(int kind) const;
+    [[nodiscard]] Result<gpu::Pipeline> material_pipeline(int kind, bool masks) const;
     [[nodiscard]] Placed prepare(const ComposeJob& job, glm::ivec2 scratch_min);
     // What weighs by the distance that a page's texels are meant for.
     struct FarWeights {
@@ -97,6 +107,8 @@ class Composer {
     // of 8 texels runs the one for what is in it.
     static constexpr size_t kKinds = 8;
     std::array<gpu::Pipeline, kKinds> materials_;
+    LayerMasks* masks_ = nullptr;
+    gpu::Pipeline mask_material_;
     gpu::Pipeline encode_[2];  // by mip; mip 0 of uncompressed pages is a copy
     std::optional<DecalPasses> decals_;
     std::array<bool, 5>

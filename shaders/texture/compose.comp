@@ -13,6 +13,7 @@ layout(constant_id = 3) const bool kDistortion = false;
 layout(constant_id = 4) const bool kTransitions = false;
 layout(constant_id = 5) const bool kVista = false;
 layout(constant_id = 6) const bool kImagery = false;
+layout(constant_id = 7) const bool kMasks = false;  // the baseline
 const bool kSmoothMips = false;
 
 layout(binding = 0) uniform sampler2DArray layer_albedo;
@@ -26,6 +27,7 @@ layout(binding = 7, scalar) readonly buffer Rects { ComposeRect rects[]; };
 layout(binding = 8, scalar) readonly buffer Tiles { ComposeTile tiles[]; };
 layout(binding = 9) uniform sampler2DArray distortion_map;
 layout(binding = 10) uniform sampler2DArray imagery_pages;
+layout(binding = 11) uniform sampler2DArray mask_pages;
 layout(push_constant, scalar) uniform Push { ComposePush push; };
 
 ComposeRect rect;
@@ -37,7 +39,9 @@ ComposeRect rect;
 #define MATERIAL_PLACE(layer) places[rect.first_place + (layer)]
 #define MATERIAL_IMAGERY imagery_pages
 #include "shaders/texture/imagery.glsl"
+#define MATERIAL_MASKS mask_pages
 #include "shaders/texture/material.glsl"
+#include "shaders/texture/masks.glsl"
 
 void main() {
     ComposeTile tile = tiles[push.first_tile + gl_WorkGroupID.x];
@@ -79,7 +83,7 @@ void main() {
     c.log2_texel = 0.0;
     c.vista = rect.vista;
     c.imagery = kImagery ? imagery_at(place, int(rect.index_slot)) * rect.imagery : vec4(0);
-    MaterialSample m = evaluate_material(c);
+    MaterialSample m = kMasks ? evaluate_masks(c, base.xy, rect.last_layer + 1u) : evaluate_material(c);
 
     ivec2 target = rect.scratch_min + at;
     precise vec3 albedo = sqrt(clamp(m.albedo, 0.0, 1.0));

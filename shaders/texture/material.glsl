@@ -126,6 +126,39 @@ LayerSample sample_layer(MaterialCorners c, uint key, uint layer) {
     return shown;
 }
 
+// What has been laid at a place so far, linear and as stored.
+struct Laid {
+    vec3 albedo;
+    vec4 surface; // normal x, normal y, gloss, occlusion
+    float metalness;
+    vec4 channels;
+};
+
+void lay_over(inout Laid laid, LayerSample s, vec3 tint, float cover) {
+    precise vec3 albedo = laid.albedo * (1.0 - cover) + s.albedo_reveal.rgb * tint * cover;
+    precise vec4 surface = laid.surface * (1.0 - cover) + s.surface * cover;
+    laid.albedo = albedo;
+    laid.surface = surface;
+    if (kHasMetal) {
+        precise float metalness = laid.metalness * (1.0 - cover) + s.metalness * cover;
+        laid.metalness = metalness;
+    }
+    if (kHasChannels) {
+        precise vec4 here = texel_channels(s.channels, s.albedo_reveal.rgb * tint, s.albedo_reveal.a);
+        precise vec4 channels = laid.channels * (1.0 - cover) + here * cover;
+        laid.channels = channels;
+    }
+}
+
+MaterialSample finished_material(Laid laid, vec4 imagery) {
+    if (kImagery) { // the layers' relief stays
+        precise vec3 far = laid.albedo * (1.0 - imagery.a) + imagery.rgb;
+        laid.albedo = far;
+    }
+    return MaterialSample(laid.albedo, vec2(layer_decode_signed(laid.surface.x), layer_decode_signed(laid.surface.y)),
+                          laid.surface.z, laid.surface.w, laid.metalness, laid.channels);
+}
+
 MaterialSample evaluate_material(MaterialCorners c) {
     uvec4 keys = c.layers;
     if (kTileHiding && !kOneLayer)
@@ -133,12 +166,7 @@ MaterialSample evaluate_material(MaterialCorners c) {
                      tile_key(keys.z, c.vertex.x, c.vertex.y + 1, c.level),
                      tile_key(keys.w, c.vertex.x + 1, c.vertex.y + 1, c.level));
     vec4 weights = ompv_weights(c.fraction);
-    MaterialSample material;
-    material.metalness = 0.0;
-    vec3 albedo = vec3(0);
-    vec4 surface = vec4(0); // normal x, normal y, gloss, occlusion as stored
-    float metalness = 0.0;
-    vec4 channels = vec4(0);
+    Laid laid = Laid(vec3(0), vec4(0), 0.0, vec4(0));
     uint from = 0u;
     // A loop, not four branches: it ends once eight lanes are done, which branches do not on software devices.
     for (int visit = 0; visit < (kOneLayer ? 1 : 4); ++visit) {
@@ -150,31 +178,8 @@ MaterialSample evaluate_material(MaterialCorners c) {
 
         LayerSample from_layer = sample_layer(c, key, kTileHiding ? key >> kKeyLayerShift : key);
         float cover = visit == 0 ? 1.0 : ompv_cover(ompv_alpha(ompv_sum(share)), from_layer.albedo_reveal.a);
-        precise vec3 next_albedo = albedo * (1.0 - cover) + from_layer.albedo_reveal.rgb * tint * cover;
-        precise vec4 next_surface = surface * (1.0 - cover) + from_layer.surface * cover;
-        albedo = next_albedo;
-        surface = next_surface;
-        if (kHasMetal) {
-            precise float next_metal = metalness * (1.0 - cover) + from_layer.metalness * cover;
-            metalness = next_metal;
-        }
-        if (kHasChannels) {
-            precise vec4 here =
-                texel_channels(from_layer.channels, from_layer.albedo_reveal.rgb * tint, from_layer.albedo_reveal.a);
-            precise vec4 next_channels = channels * (1.0 - cover) + here * cover;
-            channels = next_channels;
-        }
+        lay_over(laid, from_layer, tint, cover);
     }
-    if (kImagery) { // the layers' relief stays
-        precise vec3 far = albedo * (1.0 - c.imagery.a) + c.imagery.rgb;
-        albedo = far;
-    }
-    material.albedo = albedo;
-    material.normal = vec2(layer_decode_signed(surface.x), layer_decode_signed(surface.y));
-    material.gloss = surface.z;
-    material.occlusion = surface.w;
-    material.metalness = metalness;
-    material.channels = channels;
-    return material;
+    return finished_material(laid, c.imagery);
 }
 #endif

@@ -134,8 +134,8 @@ def test_filter(plain, tmp_path):
 
 
 def test_materials(plain):
-    (_, pages), (_, hidden), (_, transitions), (_, steps) = bench("materials", plain)
-    assert [row["layers"] for row in pages] == [1] * 4 + [4] * 6
+    (_, pages), (_, hidden), (_, transitions), (_, steps), (_, masks) = bench("materials", plain)
+    assert [row["layers"] for row in pages] == [1] * 5 + [4] * 7
     cost = {(row["layers"], row["with"]): row for row in pages}
     assert cost[1, "plain"]["layer lookups a texel"] == 1
     assert cost[4, "plain"]["layer lookups a texel"] < cost[4, "tile hiding"]["layer lookups a texel"] <= 4
@@ -149,3 +149,7 @@ def test_materials(plain):
         assert row["mip 0 rms/255"] == 0
         if row["threshold"] in (0, 1):
             assert row["mip 3 rms/255"] < 1.5
+    hard, *soft = masks
+    assert hard["rms between, of 255"] < 0.5, "masks of one layer a vertex show what the index map does"
+    for row in soft:
+        assert row["rms between, of 255"] > 1 and row["layers a texel"] > hard["layers a texel"]
