@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "editor/project_folder.h"
 #include "editor/row_mix.h"
 #include "runtime/base/srgb.h"
 #include "runtime/document/imagery.h"
@@ -84,15 +85,6 @@ Status write_rows(ImageRows& picture, Decoder& decode, const WorldRect& bounds, 
     return mixer.finish();
 }
 
-fs::path free_file(const fs::path& folder, std::string name) {
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '-' && c != '_') c = '_';
-    if (name.empty()) name = "imagery";
-    fs::path file = folder / (name + ".imagery");
-    for (int i = 2; fs::exists(file); ++i) file = folder / fmt::format("{}_{}.imagery", name, i);
-    return file;
-}
-
 void note_oddities(const ImageRows& rows, const Decoder& decoder, const WorldRect& bounds,
                    AddedImagery& out) {
     const double aspect = (bounds.max_x / rows.width()) / (bounds.max_y / rows.height());
@@ -122,7 +114,8 @@ Result<AddedImagery> add_imagery(Document& document, const AddImageryRequest& re
     ImagerySettings& imagery = settings.imagery;
     imagery.strength = request.strength.value_or(imagery.strength);
     imagery.distance_m = request.distance_m.value_or(imagery.distance_m);
-    const fs::path file = free_file(document.folder() / "imagery", request.file.stem().string());
+    const fs::path file =
+        free_file(document.folder() / "imagery", request.file.stem().string(), {".imagery"});
     imagery.file = (fs::path("imagery") / file.filename()).string();
     LOAM_TRY(check_settings(settings));
     LOAM_TRY(document.check_writable());

@@ -1,33 +1,15 @@
 #include "editor/layer_import.h"
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+
+#include "editor/project_folder.h"
 
 namespace loam {
 
 namespace fs = std::filesystem;
 
 namespace {
-
-// Letters and digits of any script stay; what file systems or shells take amiss becomes "_".
-std::string file_stem_of(const std::string& name) {
-    std::string stem = name;
-    for (char& c : stem) {
-        const auto u = static_cast<unsigned char>(c);
-        if (u < 0x80 && !std::isalnum(u) && c != '-') c = '_';
-    }
-    return stem;
-}
-
-fs::path free_file(const fs::path& folder, const std::string& name) {
-    const std::string stem = file_stem_of(name);
-    std::error_code code;
-    fs::path file = folder / (stem + ".layer");
-    for (int i = 2; fs::exists(file, code) || fs::exists(report_file_of(file), code); ++i)
-        file = folder / fmt::format("{}-{}.layer", stem, i);
-    return file;
-}
 
 std::string name_of(const AddLayerRequest& request) {
     if (!request.name.empty()) return request.name;
@@ -67,7 +49,7 @@ Result<AddedLayer> add_layer(Document& document, const AddLayerRequest& request,
     for (const LayerEntry& layer : settings.layers)
         if (layer.name == added.entry.name)
             return error("the project has a layer \"{}\": choose another name", layer.name);
-    const fs::path file = free_file(layers, added.entry.name);
+    const fs::path file = free_file(layers, added.entry.name, {".layer", ".json"});
     added.entry.file = (fs::path("layers") / file.filename()).string();
     settings.layers.push_back(added.entry);
     LOAM_TRY(check_settings(settings));

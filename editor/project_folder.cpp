@@ -2,11 +2,30 @@
 
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <utility>
 
 namespace loam {
 
 namespace fs = std::filesystem;
+
+fs::path free_file(const fs::path& folder, const std::string& name,
+                   std::initializer_list<const char*> suffixes) {
+    std::string stem = name.empty() ? "unnamed" : name;
+    for (char& c : stem) {
+        const auto u = static_cast<unsigned char>(c);
+        if (u < 0x80 && !std::isalnum(u) && c != '-' && c != '_') c = '_';
+    }
+    std::string free = stem;
+    const auto taken = [&] {
+        std::error_code ignored;
+        return std::any_of(suffixes.begin(), suffixes.end(),
+                           [&](const char* suffix) { return fs::exists(folder / (free + suffix), ignored); });
+    };
+    for (int i = 2; taken(); ++i) free = stem + "-" + std::to_string(i);
+    return folder / (free + *suffixes.begin());
+}
 
 Result<NewFolder> NewFolder::create(const fs::path& target) {
     std::error_code code;

@@ -1,14 +1,22 @@
-// A project folder that appears whole or not at all: it is made beside its place under another name and
-// renamed at the end.
+// Places for new files of a project.
 #pragma once
 
 #include <filesystem>
+#include <initializer_list>
 #include <string>
 
 #include "runtime/base/result.h"
 
 namespace loam {
 
+// Where a file of this name may be made: letters and digits of any script stay, what file systems or shells
+// take amiss becomes "_", and where any of the suffixes is taken a number is added. The path has the first
+// suffix.
+[[nodiscard]] std::filesystem::path free_file(const std::filesystem::path& folder, const std::string& name,
+                                              std::initializer_list<const char*> suffixes);
+
+// A project folder that appears whole or not at all: it is made beside its place under another name and
+// renamed at the end.
 class NewFolder {
   public:
     // Refuses a target that exists (an empty folder is accepted) and a parent that does not or cannot be

@@ -84,7 +84,7 @@ def test_pictures_of_every_kind(plain, tmp_path):
         dark = Image.fromarray(rng.integers(0, 900, (64, 64), dtype=np.uint16))
         assert any("stretch its contrast" in n for n in notes_of("dark.png", dark)["notes"])
         # A name that is taken gets a number; the one before stays.
-        assert notes_of("one.png", Image.new("RGB", (3, 5)))["file"] == "imagery/one_2.imagery"
+        assert notes_of("one.png", Image.new("RGB", (3, 5)))["file"] == "imagery/one-2.imagery"
         assert p.render(size=(64, 36)) is not None
     assert run_loam("verify", plain).returncode == 0
 
