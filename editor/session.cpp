@@ -121,6 +121,7 @@ Result<Dirt> Session::apply_one(const Command& command) {
     auto dirt = document_->apply(command);
     if (!dirt) return dirt;
     if (renderer_) renderer_->on_dirt(*dirt);
+    if (renderer_ && dirt->layers) LOAM_TRY(renderer_->settings_changed(*ring_));
     if (query_heights_) query_heights_->on_dirt(dirt->height);
     if (query_indices_) query_indices_->on_dirt(dirt->index);
     if (recorder_) {

@@ -1,5 +1,5 @@
 #include "editor/cli/verb.h"
-#include "editor/transitions.h"
+#include "runtime/document/document.h"
 
 namespace loam::cli {
 
@@ -8,19 +8,14 @@ namespace {
 Status run(const Args& args) {
     auto document = Document::open(args.positional(0), OpenMode::read_write);
     if (!document) return document.error();
-    ProjectSettings settings = (*document)->settings();
-    const std::string& name = args.positional(1);
-    if (args.has("--remove")) {
-        if (args.has("--from") || args.has("--to") || args.has("--threshold"))
-            return error("--remove stands alone");
-        LOAM_TRY(remove_transition(settings, name));
-    } else {
-        TransitionRequest request{
-            .name = name, .from = args.text("--from"), .to = args.text("--to"), .threshold = {}};
-        if (args.has("--threshold")) request.threshold = args.number("--threshold", 0.5);
-        LOAM_TRY(put_transition(settings, request));
-    }
-    return (*document)->change_settings(settings);
+    TransitionCommand transition{.name = args.positional(1),
+                                 .from = args.text("--from"),
+                                 .to = args.text("--to"),
+                                 .threshold = {},
+                                 .remove = args.has("--remove")};
+    if (args.has("--threshold")) transition.threshold = args.number("--threshold", 0.5);
+    const auto applied = (*document)->apply({transition});
+    return applied ? Status() : applied.error();
 }
 
 }  // namespace

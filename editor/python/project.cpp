@@ -10,7 +10,6 @@
 #include "editor/choices.h"
 #include "editor/settings.h"
 #include "editor/settings_text.h"
-#include "editor/transitions.h"
 #include "runtime/document/operator_json.h"
 #include "runtime/document/spline_path.h"
 
@@ -400,18 +399,14 @@ void bind_edits(py::class_<Project>& c) {
         "transition",
         [](Project& p, const std::string& name, const std::string& from, const std::string& to,
            std::optional<double> threshold) {
-            ProjectSettings settings = p.session().document().settings();
-            unwrap(put_transition(settings, {name, from, to, threshold}));
-            unwrap(p.session().change_settings(settings));
+            unwrap(p.session().apply({TransitionCommand{name, from, to, threshold, false}}));
         },
         "Makes or changes a transition between two layers.", py::arg("name"), py::arg("from_layer") = "",
         py::arg("to_layer") = "", py::arg("threshold") = py::none());
     c.def(
         "remove_transition",
         [](Project& p, const std::string& name) {
-            ProjectSettings settings = p.session().document().settings();
-            unwrap(remove_transition(settings, name));
-            unwrap(p.session().change_settings(settings));
+            unwrap(p.session().apply({TransitionCommand{name, {}, {}, {}, true}}));
         },
         "Its texels show the nearer of its layers from now on.", py::arg("name"));
     c.def(

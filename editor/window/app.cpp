@@ -40,6 +40,9 @@ struct Titles {
     std::string operator()(const ReorderCommand&) const { return "Reorder event"; }
     std::string operator()(const SetOperatorCommand& c) const { return c.enabled ? "Show event" : "Hide event"; }
     std::string operator()(const RemoveOperatorCommand&) const { return "Remove event"; }
+    std::string operator()(const TransitionCommand& c) const {
+        return fmt::format("{} {}", c.remove ? "Remove" : "Transition", c.name);
+    }
     std::string operator()(const UndoCommand&) const { return "Undo"; }
     std::string operator()(const RedoCommand&) const { return "Redo"; }
 };
@@ -96,6 +99,11 @@ bool App::apply(const Command& command) {
         return false;
     }
     scene_changed_ = true;
+    if (dirt->layers) {
+        settings_changed_ = true;
+        read_layer_names();
+        if (layer() < 0) set_layer(0);  // undone under the brush
+    }
     if (on_command) on_command(command);
     return true;
 }

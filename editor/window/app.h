@@ -75,6 +75,7 @@ class App {
     int export_width = 1920, export_height = 1080;
     std::string new_layer_name;                // of the dialog; empty: the folder's
     double new_layer_tile_m = 2;
+    uint64_t transition_group = 0;  // of a slider that is being dragged
     std::string layer_search;    // of the palette
     std::string new_stamp_name;  // likewise; empty: the file's
     bool quit = false;

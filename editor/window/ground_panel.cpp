@@ -1,30 +1,35 @@
 // How the layers are laid over the ground: transitions between them, distortion, tile hiding.
 #include <algorithm>
 
-#include "editor/transitions.h"
 #include "editor/window/panels.h"
 
 namespace loam::window {
 
 // The selected layer's, if it is one; and what makes another.
 void transition_properties(App& app, ui::Ui& ui) {
-    ProjectSettings settings = app.session.document().settings();
+    const ProjectSettings settings = app.session.document().settings();
     const int selected = app.layer();
     if (selected >= 0 && settings.layers[size_t(selected)].blend) {
-        LayerEntry& entry = settings.layers[size_t(selected)];
+        const LayerEntry& entry = settings.layers[size_t(selected)];
         ui::label(ui, fmt::format("{} to {}", entry.blend->from, entry.blend->to));
         double percent = entry.blend->threshold * 100;
-        if (ui::slider(ui, "Threshold", percent,
-                       {.min = 0, .max = 100, .decimals = 0, .unit = "%", .tooltip = "How much of the second layer shows"})) {
-            entry.blend->threshold = percent / 100;
-            app.change_settings(settings);
+        const auto moved = ui::slider(ui, "Threshold", percent,
+                                      {.min = 0,
+                                       .max = 100,
+                                       .decimals = 0,
+                                       .unit = "%",
+                                       .tooltip = "How much of the second layer shows"});
+        if (moved) {  // one step of the history a drag
+            if (app.transition_group == 0) app.transition_group = app.session.document().next_group();
+            app.apply(
+                {.body =
+                     TransitionCommand{.name = entry.name, .from = {}, .to = {}, .threshold = percent / 100},
+                 .group = app.transition_group});
         }
-        if (ui::button(ui, "Remove transition", {.tooltip = "Its ground shows the nearer of the two layers"})) {
-            const Status status = remove_transition(settings, entry.name);
-            if (!status) return app.fail(status.message());
-            app.set_layer(0);
-            app.change_settings(settings);
-        }
+        if (moved.finished) app.transition_group = 0;
+        if (ui::button(ui, "Remove transition", {.tooltip = "Its ground shows the nearer of the two layers"}))
+            app.apply({.body = TransitionCommand{
+                           .name = entry.name, .from = {}, .to = {}, .threshold = {}, .remove = true}});
         ui::separator(ui);
     }
     std::vector<std::string_view> sides;
@@ -39,9 +44,8 @@ void transition_properties(App& app, ui::Ui& ui) {
     if (!ui::button(ui, "Make transition")) return;
     const std::string from(sides[size_t(app.transition_from)]), to(sides[size_t(app.transition_to)]);
     const std::string name = fmt::format("{} to {}", from, to);
-    const Status status = put_transition(settings, {.name = name, .from = from, .to = to, .threshold = {}});
-    if (!status) return app.fail(status.message());
-    app.change_settings(settings);
+    if (!app.apply({.body = TransitionCommand{.name = name, .from = from, .to = to, .threshold = {}}}))
+        return;
     app.set_layer(int(std::find(app.layer_names.begin(), app.layer_names.end(), name) - app.layer_names.begin()));
 }
 

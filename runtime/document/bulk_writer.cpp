@@ -95,14 +95,29 @@ struct BulkWriter::Impl {
         if (broken) return error("the bulk write has failed before; nothing of it was kept");
         if (open) return {};
         LOAM_TRY(document.may_write());
-        if (!document.heads.empty())
-            return error(
-                "the journal holds {} commands that could not be undone after a bulk write; "
-                "import into a new project",
-                document.heads.size());
+        LOAM_TRY(check_journal());
         LOAM_TRY(document.store.begin());
         open = document.bulk_writing = true;
         return {};
+    }
+
+    // What changed operators or the layer list can be undone whatever the maps are.
+    Status check_journal() {
+        bool edited = false;
+        const Status read = document.store.for_each_journal(
+            0, PageStore::JournalColumns::all, [&](const JournalRow& row) -> Status {
+                const auto images = images_of(row.images);
+                if (!images.ok()) return images.error();
+                edited = std::any_of(images->begin(), images->end(), [](const RowImage& image) {
+                    return image.kind == RowImage::Kind::page;
+                });
+                return edited ? error("an edit of a map") : Status();  // the first is enough
+            });
+        if (edited)
+            return error(
+                "the journal holds edits of the maps that could not be undone after a bulk write; "
+                "import into a new project");
+        return read;
     }
 
     void abandon() {

@@ -29,6 +29,9 @@
 //       (ground_decal.h says what they mean); all of it may be left out
 //   {"cmd":"stamp","image":"ridge","x":0,"y":0,"half_m":[50,50],"heading_rad":0,"mode":"add","height_m":20,
 //       "base_m":0,"strength":1,"edge":0.1,"layer":"rock","layer_from":0.5,"colour":false}  (stamp.h)
+//   {"cmd":"transition","name":"edge","from":"grass","to":"rock","threshold":0.5}   makes one, or changes
+//   what is
+//       given of it; {"cmd":"transition","name":"edge","remove":true}   (transitions.h)
 //   {"cmd":"edit","id":12,"kind":"decal", …}   replaces all parameters; kinds: crater, footprint, decal,
 //       spline, volume, stamp
 //   {"cmd":"reorder","id":12,"order":3}   evaluated in ascending order, then id; a new operator's order is
@@ -36,8 +39,8 @@
 //   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}
 //   {"cmd":"undo"}    {"cmd":"redo"}
 // Required: mode and dabs; target_m to flatten; layer or tint; x and y (of a fill no dabs); prints; points;
-// at; id, enabled and order. The rest have the defaults below. Any command may carry "group": n. Consecutive
-// commands of one group undo together.
+// at; id, enabled and order; name. The rest have the defaults below. Any command may carry "group": n.
+// Consecutive commands of one group undo together.
 #pragma once
 
 #include <optional>
@@ -123,12 +126,19 @@ struct SetOperatorCommand {
 struct RemoveOperatorCommand {
     uint64_t id = 0;
 };
+// The layer list's entry of this name that is made of two others.
+struct TransitionCommand {
+    std::string name;
+    std::string from, to;  // layers with textures; empty: as they are
+    std::optional<double> threshold;
+    bool remove = false;  // its texels show the nearer of the two; nothing else is given then
+};
 struct UndoCommand {};
 struct RedoCommand {};
 
 using CommandBody = std::variant<SculptCommand, PaintCommand, FillCommand, CraterCommand, FootprintsCommand,
                                  AddOperatorCommand, EditOperatorCommand, ReorderCommand, SetOperatorCommand,
-                                 RemoveOperatorCommand, UndoCommand, RedoCommand>;
+                                 RemoveOperatorCommand, TransitionCommand, UndoCommand, RedoCommand>;
 
 struct Command {
     CommandBody body;

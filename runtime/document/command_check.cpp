@@ -203,6 +203,13 @@ Status check(const EditOperatorCommand& c) {
     return check_shape(c.shape);
 }
 
+Status check(const TransitionCommand& c) {
+    if (c.name.empty()) return error("a transition needs a name");
+    if (c.remove && (!c.from.empty() || !c.to.empty() || c.threshold))
+        return error("\"remove\" of a transition stands alone: no from, to or threshold");
+    return c.threshold ? in_range("threshold", *c.threshold, 0, 1) : Status();
+}
+
 template <typename Other>
 Status check(const Other&) {
     return {};

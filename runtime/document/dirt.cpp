@@ -67,6 +67,7 @@ void append_dirt(Dirt& to, const Dirt& more) {
     to.index.insert(to.index.end(), more.index.begin(), more.index.end());
     to.texture.insert(to.texture.end(), more.texture.begin(), more.texture.end());
     to.texture_size_m = std::max(to.texture_size_m, more.texture_size_m);
+    to.layers |= more.layers;
 }
 
 std::vector<uint8_t> dirt_bytes(const Dirt& dirt) {

@@ -41,7 +41,8 @@ namespace loam {
 struct Dirt {
     std::vector<WorldRect> height, index, texture;
     double texture_size_m = 0;
-    [[nodiscard]] bool empty() const { return height.empty() && index.empty() && texture.empty(); }
+    bool layers = false;  // the layer list is another one: all that shows layers (Renderer::settings_changed)
+    [[nodiscard]] bool empty() const { return height.empty() && index.empty() && texture.empty() && !layers; }
 };
 
 enum class OpenMode { read_write, read_only };
@@ -123,8 +124,8 @@ class Document {
 
 // Writes whole maps (import, recipes) without journal: rows south to north, any number at a time, from row 0
 // to the last; a map of which no row was given stays as it is. `finish` builds the mips and commits. Commands
-// are refused meanwhile. Dropped without `finish`: nothing changed. Refused when the journal holds commands
-// (they could not be undone).
+// are refused meanwhile. Dropped without `finish`: nothing changed. Refused when the journal holds edits of
+// the maps (they could not be undone).
 class BulkWriter {
   public:
     explicit BulkWriter(Document& document);

@@ -8,6 +8,7 @@
 #include "runtime/document/operator_json.h"
 #include "runtime/document/paint.h"
 #include "runtime/document/sculpt.h"
+#include "runtime/document/transitions.h"
 
 namespace loam {
 
@@ -234,10 +235,36 @@ Status Document::Impl::compute(const RemoveOperatorCommand& command, Change& cha
     return {};
 }
 
+Status Document::Impl::compute(const TransitionCommand& command, Change& change) {
+    ProjectSettings after = settings;
+    const auto place =
+        command.remove ? remove_transition(after, command.name) : put_transition(after, command);
+    if (!place.ok()) return place.error();
+    const std::string text = transition_json(after.layers[*place]);
+    change.images.push_back(
+        {RowImage::Kind::transition, int64_t(*place), std::vector<uint8_t>(text.begin(), text.end())});
+    return {};
+}
+
+// Before the commit: killed between the two, the list has a change that the journal does not know, which
+// harms nothing.
+Status Document::Impl::save_settings(const Change& change) {
+    return change.settings ? save_project(folder, *change.settings) : Status();
+}
+
+void Document::Impl::take_back_settings(const Change& change) {
+    if (!change.settings) return;
+    if (const Status status = save_project(folder, settings); !status.ok())
+        log(LogLevel::error, "{}", status.message());
+}
+
 Status Document::Impl::write_change(Change& change, const JournalRow& row_head, const PageBalance& before) {
     if (applied_count() < heads.size()) LOAM_TRY(store.erase_undone());
     PageBalance balance = before;
-    LOAM_TRY(swap_images(store, change.images, balance));
+    SettingsEdit edit{settings};
+    LOAM_TRY(swap_images(store, change.images, balance, edit));
+    change.settings = std::move(edit.changed);
+    change.dirt.layers = change.settings.has_value();
     JournalRow row = row_head;
     row.images = image_bytes(change.images);
     row.dirt = dirt_bytes(change.dirt);
@@ -261,10 +288,12 @@ Result<Dirt> Document::Impl::commit_change(Change& change, const Command& comman
     const PageBalance before = page_count;
     LOAM_TRY(store.begin());
     Status status = write_change(change, row, before);
+    if (status.ok()) status = save_settings(change);
     if (status.ok()) {
         const Exclusive exclusive(*this);
         status = store.commit();
         if (status.ok()) {
+            if (change.settings) settings = std::move(*change.settings);
             if (change.heights) change.heights->publish(change.height_changes);
             if (change.texels) change.texels->publish(change.index_changes);
             for (const auto& [id, op] : change.operators) op ? operators.set(*op) : operators.remove(id);
@@ -276,6 +305,7 @@ Result<Dirt> Document::Impl::commit_change(Change& change, const Command& comman
             ++revision;
             return std::move(change.dirt);
         }
+        take_back_settings(change);
     }
     store.rollback();
     page_count = before;
@@ -285,6 +315,7 @@ Result<Dirt> Document::Impl::commit_change(Change& change, const Command& comman
 Status Document::Impl::write_swaps(size_t first, size_t end, bool applied, Change& change,
                                    PageBalance& balance) {
     const size_t count = end - first;
+    SettingsEdit edit{settings};
     for (size_t i = 0; i < count; ++i) {
         // Undo from the newest back, redo from the oldest on.
         auto row = store.read_journal(heads[applied ? first + i : end - 1 - i].sequence);
@@ -297,6 +328,7 @@ Status Document::Impl::write_swaps(size_t first, size_t end, bool applied, Chang
                     {image.key, std::nullopt});  // of either map: only the key counts here
                 continue;
             }
+            if (image.kind == RowImage::Kind::transition) continue;  // swap_images reads it
             auto& op = change.operators[uint64_t(image.key)];
             op.reset();
             if (!image.bytes) continue;
@@ -311,11 +343,13 @@ Status Document::Impl::write_swaps(size_t first, size_t end, bool applied, Chang
         auto dirt = dirt_of(row->dirt);
         if (!dirt.ok()) return dirt.error();
         append_dirt(change.dirt, *dirt);
-        LOAM_TRY(swap_images(store, *images, balance));
+        LOAM_TRY(swap_images(store, *images, balance, edit));
         row->images = image_bytes(*images);
         row->applied = applied;
         LOAM_TRY(store.write_journal(*row));
     }
+    change.settings = std::move(edit.changed);
+    change.dirt.layers = change.settings.has_value();
     LOAM_TRY(store.write_meta("height_pages", balance.height));
     return store.write_meta("index_pages", balance.index);
 }
@@ -325,10 +359,12 @@ Result<Dirt> Document::Impl::swap_commands(size_t first, size_t end, bool applie
     PageBalance balance = page_count;
     LOAM_TRY(store.begin());
     Status status = write_swaps(first, end, applied, change, balance);
+    if (status.ok()) status = save_settings(change);
     if (status.ok()) {
         const Exclusive exclusive(*this);
         status = store.commit();
         if (status.ok()) {
+            if (change.settings) settings = std::move(*change.settings);
             for (const PageChange& page : change.height_changes) pages->forget(page.key);
             for (const auto& [id, op] : change.operators) op ? operators.set(*op) : operators.remove(id);
             for (size_t i = first; i < end; ++i) heads[i].applied = applied;
@@ -337,6 +373,7 @@ Result<Dirt> Document::Impl::swap_commands(size_t first, size_t end, bool applie
             merge_dirt(change.dirt, kMaxOperatorRects);
             return std::move(change.dirt);
         }
+        take_back_settings(change);
     }
     store.rollback();
     return status.error();

@@ -80,6 +80,7 @@ struct Document::Impl {
         std::vector<PageChange> height_changes, index_changes;
         Dirt dirt;
         uint64_t next_operator = 0;
+        std::optional<ProjectSettings> settings;  // the transitions' change
     };
     Status compute(const SculptCommand& command, Change& change);
     Status compute(const PaintCommand& command, Change& change);
@@ -94,6 +95,7 @@ struct Document::Impl {
     Status compute(const ReorderCommand& command, Change& change);
     Status compute(const SetOperatorCommand& command, Change& change);
     Status compute(const RemoveOperatorCommand& command, Change& change);
+    Status compute(const TransitionCommand& command, Change& change);
     Status compute(const UndoCommand&, Change&) { return error("undo is not a command of the journal"); }
     Status compute(const RedoCommand&, Change&) { return error("redo is not a command of the journal"); }
     void change_operator(uint64_t id, std::optional<Operator> op, Change& change);
@@ -107,6 +109,9 @@ struct Document::Impl {
     // Swaps the rows of the journal heads [first, end), the direction that `applied` names, in one
     // transaction.
     Result<Dirt> swap_commands(size_t first, size_t end, bool applied);
+    // project.toml beside a transaction that is about to be committed, and back when that fails.
+    Status save_settings(const Change& change);
+    void take_back_settings(const Change& change);
     void tidy_log();
     Status write_swaps(size_t first, size_t end, bool applied, Change& change, PageBalance& balance);
 };

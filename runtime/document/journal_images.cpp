@@ -1,6 +1,8 @@
 #include "runtime/document/journal_images.h"
 
 #include "runtime/document/byte_stream.h"
+#include "runtime/document/operator_json.h"
+#include "runtime/document/transitions.h"
 
 namespace loam {
 
@@ -33,6 +35,32 @@ Status swap_operator(PageStore& store, RowImage& image) {
     return {};
 }
 
+Status swap_transition(SettingsEdit& settings, RowImage& image) {
+    if (!settings.changed) settings.changed = settings.current;
+    std::vector<LayerEntry>& layers = settings.changed->layers;
+    const size_t place = size_t(image.key);
+    if (image.key < 0 || place > layers.size() || (place < layers.size() && !layers[place].blend))
+        return error("the journal tells of a transition at place {} of the layer list, which is none",
+                     image.key);
+    std::optional<std::vector<uint8_t>> before;
+    if (place < layers.size()) {
+        const std::string text = transition_json(layers[place]);
+        before.emplace(text.begin(), text.end());
+    }
+    if (image.bytes) {
+        auto entry =
+            parse_transition({reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
+        if (!entry.ok()) return error("the journal: {}", entry.message());
+        if (place == layers.size()) layers.emplace_back();
+        layers[place] = std::move(*entry);
+    } else if (place < layers.size() && !layers[place].blend->removed) {
+        const auto removed = remove_transition(*settings.changed, layers[place].name);
+        if (!removed.ok()) return removed.error();
+    }
+    image.bytes = std::move(before);
+    return {};
+}
+
 }  // namespace
 
 std::vector<uint8_t> image_bytes(const std::vector<RowImage>& images) {
@@ -56,7 +84,7 @@ Result<std::vector<RowImage>> images_of(std::span<const uint8_t> bytes) {
         image.key = int64_t(reader.u64());
         const uint8_t present = reader.u8();
         const auto content = reader.bytes(reader.u32());
-        if (kind > 1 || present > 1 || (present == 0 && !content.empty()))
+        if (kind > uint8_t(RowImage::Kind::transition) || present > 1 || (present == 0 && !content.empty()))
             return error("damaged images of a command in the journal");
         image.kind = RowImage::Kind(kind);
         if (present == 1) image.bytes.emplace(content.begin(), content.end());
@@ -66,12 +94,20 @@ Result<std::vector<RowImage>> images_of(std::span<const uint8_t> bytes) {
     return images;
 }
 
-Status swap_images(PageStore& store, std::vector<RowImage>& images, PageBalance& balance) {
+Status swap_images(PageStore& store, std::vector<RowImage>& images, PageBalance& balance,
+                   SettingsEdit& settings) {
     for (RowImage& image : images) {
-        if (image.kind == RowImage::Kind::page)
-            LOAM_TRY(swap_page(store, image, balance));
-        else
-            LOAM_TRY(swap_operator(store, image));
+        switch (image.kind) {
+            case RowImage::Kind::page:
+                LOAM_TRY(swap_page(store, image, balance));
+                break;
+            case RowImage::Kind::op:
+                LOAM_TRY(swap_operator(store, image));
+                break;
+            case RowImage::Kind::transition:
+                LOAM_TRY(swap_transition(settings, image));
+                break;
+        }
     }
     return {};
 }

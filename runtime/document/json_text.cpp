@@ -221,6 +221,23 @@ void write(Json& json, const RemoveOperatorCommand& c) {
     json["cmd"] = "remove";
     json["id"] = c.id;
 }
+void write(Json& json, const TransitionCommand& c) {
+    json["cmd"] = "transition";
+    json["name"] = c.name;
+    if (!c.from.empty()) json["from"] = c.from;
+    if (!c.to.empty()) json["to"] = c.to;
+    if (c.threshold) json["threshold"] = *c.threshold;
+    if (c.remove) json["remove"] = true;
+}
+TransitionCommand read_transition(Fields& fields) {
+    TransitionCommand c;
+    c.name = fields.text("name");
+    if (fields.find("from")) c.from = fields.text("from");
+    if (fields.find("to")) c.to = fields.text("to");
+    if (fields.find("threshold")) c.threshold = fields.number("threshold");
+    c.remove = fields.truth("remove", false);
+    return c;
+}
 void write(Json& json, const UndoCommand&) {
     json["cmd"] = "undo";
 }
@@ -308,11 +325,12 @@ CommandBody read_body(const std::string& name, Fields& fields) {
         return c;
     }
     if (name == "remove") return RemoveOperatorCommand{fields.whole("id", kMaxId)};
+    if (name == "transition") return read_transition(fields);
     if (name == "undo") return UndoCommand{};
     if (name == "redo") return RedoCommand{};
     refuse(
         "unknown command \"{}\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-        "stamp, edit, reorder, operator, remove, undo, redo)",
+        "stamp, edit, reorder, operator, remove, transition, undo, redo)",
         name);
 }
 
@@ -360,6 +378,27 @@ std::string to_json(const Command& command) {
     std::visit([&](const auto& body) { write(json, body); }, command.body);
     if (command.group != 0) json["group"] = command.group;
     return dump(json);
+}
+
+std::string transition_json(const LayerEntry& entry) {
+    Json json;
+    json["name"] = entry.name;
+    json["from"] = entry.blend->from;
+    json["to"] = entry.blend->to;
+    json["threshold"] = entry.blend->threshold;
+    if (entry.blend->removed) json["removed"] = true;
+    return dump(json);
+}
+
+Result<LayerEntry> parse_transition(std::string_view text) {
+    return parse<LayerEntry>(text, [](const Json& json) {
+        Fields fields(json, "a transition");
+        LayerEntry entry{.name = fields.text("name"), .file = {}};
+        entry.blend = LayerEntry::Blend{fields.text("from"), fields.text("to"), fields.number("threshold"),
+                                        fields.truth("removed", false)};
+        fields.finish();
+        return entry;
+    });
 }
 
 std::string operator_json(const Operator& op) {

@@ -39,7 +39,47 @@ int wanted(const std::vector<Transition>& transitions, const std::vector<uint16_
     return kNone;
 }
 
+LayerEntry* find_layer(ProjectSettings& settings, const std::string& name) {
+    const auto found = std::find_if(settings.layers.begin(), settings.layers.end(),
+                                    [&](const LayerEntry& l) { return l.name == name; });
+    return found == settings.layers.end() ? nullptr : &*found;
+}
+
 }  // namespace
+
+Result<size_t> put_transition(ProjectSettings& settings, const TransitionCommand& command) {
+    LayerEntry* entry = find_layer(settings, command.name);
+    if (entry && (!entry->blend || entry->blend->removed))
+        return error("\"{}\" is {}, not a transition", command.name,
+                     entry->blend ? "a removed one" : "a layer");
+    if (!entry) {
+        if (command.from.empty() || command.to.empty())
+            return error("there is no transition \"{}\"; a new one needs the layers it is from and to",
+                         command.name);
+        const auto removed = std::find_if(settings.layers.begin(), settings.layers.end(),
+                                          [](const LayerEntry& l) { return l.blend && l.blend->removed; });
+        entry = removed != settings.layers.end() ? &*removed : &settings.layers.emplace_back();
+        entry->name = command.name;
+        entry->blend = LayerEntry::Blend{};
+    }
+    if (!command.from.empty()) entry->blend->from = command.from;
+    if (!command.to.empty()) entry->blend->to = command.to;
+    if (command.threshold) entry->blend->threshold = *command.threshold;
+    const size_t place = size_t(entry - settings.layers.data());
+    LOAM_TRY(check_settings(settings));
+    return place;
+}
+
+Result<size_t> remove_transition(ProjectSettings& settings, const std::string& name) {
+    LayerEntry* entry = find_layer(settings, name);
+    if (!entry || !entry->blend || entry->blend->removed) return error("there is no transition \"{}\"", name);
+    entry->blend->removed = true;
+    int number = 1;
+    const auto free_name = [&] { return fmt::format("removed transition {}", number); };
+    while (find_layer(settings, free_name())) ++number;
+    entry->name = free_name();
+    return size_t(entry - settings.layers.data());
+}
 
 std::vector<Transition> transitions_of(const ProjectSettings& settings) {
     const auto number_of = [&](const std::string& name) {

@@ -246,6 +246,10 @@ class Verifier {
                     parse_operator(uint64_t(image.key),
                                    {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
                 if (!op.ok()) status = op.error();
+            } else if (image.kind == RowImage::Kind::transition) {
+                const auto entry = parse_transition(
+                    {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
+                if (!entry.ok()) status = entry.error();
             } else if (PageKey::unpacked(image.key).map == BaseMap::height) {
                 BasePage<int32_t> page;
                 status = decode_page<int32_t>(*image.bytes, page);

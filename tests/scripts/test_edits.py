@@ -178,6 +178,57 @@ def test_settings_of_the_ground_are_set_and_refused(plain):
     assert "must be a number" in fails_with_one_sentence(run_loam("set", plain, "sun.azimuth_rad", "north"))
 
 
+def test_transitions_are_commands(plain, tmp_path):
+    """Undone, redone, recorded, replayed and kept like every other edit, also among layers that are added meanwhile."""
+    layers = lambda: [line for line in (plain / "project.toml").read_text().splitlines() if "blend" in line or "removed =" in line]
+    with loam.open(str(plain)) as p:
+        count = len(p.layers)
+        camera = loam.Camera.look_at((128, 100, p.height(128, 100) + 6), (128, 128, float(p.height(128, 128))))
+        p.record_to(str(tmp_path / "script.jsonl"))
+        p.apply({"cmd": "transition", "name": "edge", "from": "grass", "to": "dirt", "threshold": 0.125})
+        p.apply({"cmd": "paint", "dabs": [[128, 128]], "radius_m": 40, "layer": "edge"})
+        low = np.asarray(p.render(camera=camera, size=(200, 120))).astype(int)
+        p.transition("edge", threshold=0.875)
+        high = np.asarray(p.render(camera=camera, size=(200, 120))).astype(int)
+        assert np.abs(high - low).mean() > 3
+        p.undo()
+        assert np.abs(np.asarray(p.render(camera=camera, size=(200, 120))).astype(int) - low).max() <= 1
+        p.redo()
+        assert np.abs(np.asarray(p.render(camera=camera, size=(200, 120))).astype(int) - high).max() <= 1
+        p.remove_transition("edge")
+        assert "edge" not in p.layers
+    with loam.open(str(plain)) as p:  # the history survives
+        p.undo()
+        assert p.layers[count] == "edge" and "threshold = 0.875" in (plain / "project.toml").read_text()
+        p.undo()
+        assert "threshold = 0.125" in (plain / "project.toml").read_text()
+        p.undo()
+        p.undo()  # made it
+        assert not p.can_undo and "edge" not in p.layers and len(p.layers) == count + 1, "its number is kept"
+        for _ in range(4):
+            p.redo()
+        assert not p.can_redo and "edge" not in p.layers
+        p.undo()
+        assert np.abs(np.asarray(p.render(camera=camera, size=(200, 120))).astype(int) - high).max() <= 1
+        for bad, said in (({"name": ""}, "needs a name"), ({"name": "x"}, "needs the layers"), ({"name": "grass"}, "is a layer"),
+                          ({"name": "edge", "threshold": 1.5}, "threshold is 1.5"), ({"name": "edge", "blend": 1}, "unknown key"),
+                          ({"name": "edge", "remove": True, "to": "dirt"}, "stands alone"),
+                          ({"name": "edge", "to": "grass"}, "to itself")):
+            with pytest.raises(loam.Error, match=said):
+                p.apply({"cmd": "transition", **bad})
+        before = layers()
+    assert run_loam("verify", plain).returncode == 0
+    assert before == layers() and len(before) == 1
+    # Made of the recorded script, another project has the same list.
+    with loam.open(str(plain)) as p:
+        for _ in range(3):
+            p.undo()
+        p.apply({"cmd": "undo"}) if p.can_undo else None
+    done = run_loam("replay", plain, tmp_path / "script.jsonl")
+    assert done.returncode == 0, done.stderr
+    assert "removed = true" in "".join(layers())
+
+
 def test_transitions_are_made_placed_changed_and_removed(plain):
     done = run_loam("transition", plain, "edge", "--from", "grass", "--to", "dirt", "--threshold", "0.4")
     assert done.returncode == 0, done.stderr

@@ -41,7 +41,8 @@ TEST(command, the_examples_of_the_header_parse) {
          R"({"cmd":"crater","x":1,"y":2,"radius_m":10,"heat":0.8})",
          R"({"cmd":"footprints","prints":[{"x":1,"y":2,"heading_rad":0.1,"foot":0}],"length_m":0.3,"depth_m":0.03,"seed":1})",
          R"({"cmd":"operator","id":12,"enabled":false})", R"({"cmd":"remove","id":12,"group":3})",
-         R"({"cmd":"undo"})"}) {
+         R"({"cmd":"transition","name":"edge","from":"grass","to":"rock","threshold":0.5})",
+         R"({"cmd":"transition","name":"edge","remove":true})", R"({"cmd":"undo"})"}) {
         const auto command = parse_command(json);
         EXPECT_TRUE(command.ok()) << json << ": " << (command.ok() ? "" : command.message());
     }
@@ -66,7 +67,12 @@ TEST(command, errors_are_one_sentence) {
         {R"({"cmd":5})", "a command: \"cmd\" must be a text, found number"},
         {R"({"cmd":"foo"})",
          "unknown command \"foo\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-         "stamp, edit, reorder, operator, remove, undo, redo)"},
+         "stamp, edit, reorder, operator, remove, transition, undo, redo)"},
+        {R"({"cmd":"transition"})", "transition: \"name\" is missing"},
+        {R"({"cmd":"transition","name":""})", "a transition needs a name"},
+        {R"({"cmd":"transition","name":"a","threshold":-1})", "threshold is -1, must be 0 … 1"},
+        {R"({"cmd":"transition","name":"a","remove":true,"from":"b"})",
+         "\"remove\" of a transition stands alone"},
         {R"({"cmd":"undo","x":1})", "undo: unknown key \"x\" (known: cmd, group)"},
         {R"({"cmd":"sculpt","dabs":[]})", "sculpt: \"mode\" is missing"},
         {R"({"cmd":"sculpt","mode":"dig","dabs":[]})",

@@ -76,7 +76,7 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
         return list;
     };
     Command command;
-    switch (whole(0, 12)) {
+    switch (whole(0, 13)) {
         case 0:
         case 1:
         case 2: {
@@ -149,6 +149,19 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
         case 11:
             command.body = ReorderCommand{random() % (most_id + 1), uint64_t(whole(0, 40))};
             break;
+        case 12: {
+            TransitionCommand transition{
+                .name = "edge " + std::to_string(whole(0, 2)), .from = {}, .to = {}, .threshold = {}};
+            if (whole(0, 3) == 0) {
+                transition.remove = true;
+            } else {
+                transition.from = "grass";
+                transition.to = whole(0, 1) ? "dirt" : "scree";
+                if (whole(0, 1)) transition.threshold = uniform(0, 1);
+            }
+            command.body = transition;
+            break;
+        }
         default:
             command.body = RemoveOperatorCommand{random() % (most_id + 1)};
             break;
