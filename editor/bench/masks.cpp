@@ -89,25 +89,14 @@ Result<LayerMasks> upload(Stage& stage, const MapPage& page, const std::vector<s
 }
 
 struct Composed {
-    double ms = 1e9;
+    double ms = 0;
     std::vector<uint8_t> albedo;  // RGBA8, the page's
 };
 
 Result<Composed> compose(Stage& stage, PageMaker& maker, const ComposeJob& job, int repeats) {
-    const std::vector<ComposeJob> jobs(4, job);
-    Composed out;
-    double idle = 1e9;
-    for (int i = 0; i < repeats; ++i) {
-        auto ms = stage.timed_frame([&](gpu::Commands& commands) {
-            return maker.composer->cmd_compose(*stage.ring, commands, jobs, maker.atlas);
-        });
-        if (!ms) return ms.error();
-        auto none = stage.timed_frame([](gpu::Commands&) { return Status(); });
-        if (!none) return none.error();
-        out.ms = std::min(out.ms, ms->y);
-        idle = std::min(idle, none->y);
-    }
-    out.ms = (out.ms - idle) / double(jobs.size());
+    auto ms = stage.page_ms(maker, job, repeats);
+    if (!ms) return ms.error();
+    Composed out{*ms, {}};
     auto read = stage.timed_frame([&](gpu::Commands& commands) -> Status {
         stage.ring->read_back(commands, maker.atlas[0], [&](std::span<const std::byte> bytes) {
             const auto* from = reinterpret_cast<const uint8_t*>(bytes.data());

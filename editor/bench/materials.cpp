@@ -123,20 +123,9 @@ Result<PageCost> page_cost(const std::filesystem::path& project, gpu::Device& de
     if (!maker) return maker.error();
     auto job = stage->whole_page(kPage);
     if (!job) return job.error();
-    const std::vector<ComposeJob> jobs(4, *job);
-    double best = 1e9, idle = 1e9;
-    for (int i = 0; i < repeats; ++i) {
-        auto ms = stage->timed_frame([&](gpu::Commands& commands) {
-            return maker->composer->cmd_compose(*stage->ring, commands, jobs, maker->atlas);
-        });
-        if (!ms) return ms.error();
-        best = std::min(best, ms->y);
-        auto none = stage->timed_frame([](gpu::Commands&) { return Status(); });
-        if (!none) return none.error();
-        idle = std::min(idle, none->y);
-    }
-    return PageCost{(best - idle) / double(jobs.size()),
-                    lookups_a_texel(*stage, stage->index->resident_page(job->index_page), *job),
+    auto ms = stage->page_ms(*maker, *job, repeats);
+    if (!ms) return ms.error();
+    return PageCost{*ms, lookups_a_texel(*stage, stage->index->resident_page(job->index_page), *job),
                     stage->layers->albedo_reveal.bytes() + stage->layers->normal_gloss_occlusion.bytes() +
                         stage->layers->metalness.bytes()};
 }

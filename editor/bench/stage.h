@@ -1,6 +1,7 @@
 // Index pages, layers and frames without a renderer: for benches of composition alone.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 
 #include "editor/bench/bench.h"
@@ -67,6 +68,22 @@ struct Stage {
         LOAM_TRY(make_resident(job.index_page));
         job.index_slot = index->map().slot_of(job.index_page);
         return job;
+    }
+    // Milliseconds a page: the best of some frames that compose it four times, less an empty one.
+    Result<double> page_ms(PageMaker& maker, const ComposeJob& job, int repeats) {
+        const std::vector<ComposeJob> jobs(4, job);
+        double best = 1e9, idle = 1e9;
+        for (int i = 0; i < repeats; ++i) {
+            auto ms = timed_frame([&](gpu::Commands& commands) {
+                return maker.composer->cmd_compose(*ring, commands, jobs, maker.atlas);
+            });
+            if (!ms) return ms.error();
+            best = std::min(best, ms->y);
+            auto none = timed_frame([](gpu::Commands&) { return Status(); });
+            if (!none) return none.error();
+            idle = std::min(idle, none->y);
+        }
+        return (best - idle) / double(jobs.size());
     }
     Status make_resident(const MapPage& page) {
         for (int i = 0; i < 50; ++i) {

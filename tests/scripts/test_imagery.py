@@ -105,7 +105,7 @@ def test_bad_input_is_one_sentence(plain, tmp_path):
                             (("set", plain, "imagery.file", "imagery/nowhere.imagery"), "nowhere.imagery cannot be read")):
         assert said in fails_with_one_sentence(run_loam(*arguments))
     assert (plain / "project.toml").read_text() == before
-    assert not list((plain / "imagery").glob("*")) if (plain / "imagery").exists() else True
+    assert not list((plain / "imagery").glob("*"))
 
 
 def test_a_project_without_its_imagery_opens(plain, tmp_path):
