@@ -129,6 +129,7 @@ Json to_report(const FrameStatistics& s) {
             {"height", counters(s.height)},
             {"index", counters(s.index)},
             {"texture", to_report(s.texture)},
+            {"layers", {{"files", s.layers.files}, {"slots", s.layers.slots}, {"loads", s.layers.loads}}},
             {"memory_bytes", memory},
             {"passes", passes}};
 }

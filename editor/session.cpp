@@ -26,6 +26,7 @@ constexpr int kRestingFrames = 4;
 // slots for all of them.
 constexpr double kReferenceSplitDistance = 6.0;
 constexpr int kReferenceHeightSlots = 1024;
+constexpr int kReferenceLayers_mb = 65'536;
 
 Result<double> largest_height_m(const Document& document) {
     const auto lock = document.read_lock();
@@ -87,6 +88,7 @@ Result<Renderer*> Session::renderer() {
 RendererDesc reference_renderer(RendererDesc desc) {
     desc.height_slots = std::max(desc.height_slots, kReferenceHeightSlots);
     desc.patch_split_distance = std::max(desc.patch_split_distance, kReferenceSplitDistance);
+    desc.layer_budget_mb = std::max(desc.layer_budget_mb, kReferenceLayers_mb);  // it looks at them directly
     return desc;
 }
 

@@ -60,6 +60,8 @@ constexpr Setting kSettings[] = {
     {"geometry.split_distance", [](R& r) -> Target { return &r.patch_split_distance; }, 0, 64,
      "patches nearer than so many of their sides are split; 0: by device"},
     {"height.pages", [](R& r) -> Target { return &r.height_slots; }, 16, 2048, "pages of the height cache"},
+    {"layers.budget_mb", [](R& r) -> Target { return &r.layer_budget_mb; }, 1, 65'536,
+     "memory for layers' textures, MB; what does not fit is read when pages need it"},
     {"index.pages", [](R& r) -> Target { return &r.index_slots; }, 16, 2048, "pages of the index cache"},
 };
 

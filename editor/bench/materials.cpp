@@ -126,8 +126,7 @@ Result<PageCost> page_cost(const std::filesystem::path& project, gpu::Device& de
     auto ms = stage->page_ms(*maker, *job, repeats);
     if (!ms) return ms.error();
     return PageCost{*ms, lookups_a_texel(*stage, stage->index->resident_page(job->index_page), *job),
-                    stage->layers->albedo_reveal.bytes() + stage->layers->normal_gloss_occlusion.bytes() +
-                        stage->layers->metalness.bytes()};
+                    stage->layers->gpu_bytes()};
 }
 
 // Against the reference, which evaluates the same functions per pixel, supersampled.

@@ -30,7 +30,7 @@ struct Stage {
         auto ring = gpu::FrameRing::create(device, 2);
         if (!ring) return ring.error();
         stage.ring = std::move(*ring);
-        auto layers = LayerSet::create(*stage.ring, document);
+        auto layers = LayerSet::create(*stage.ring, document, UINT64_MAX);
         if (!layers) return layers.error();
         stage.layers = std::move(*layers);
         auto index = IndexMap::create(&device, document, {});

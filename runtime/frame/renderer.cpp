@@ -186,7 +186,7 @@ VirtualTextureDesc Renderer::Impl::texture_desc() const {
 }
 
 Status Renderer::Impl::create_texture(gpu::FrameRing& ring) {
-    auto set = LayerSet::create(ring, document);
+    auto set = LayerSet::create(ring, document, uint64_t(desc.layer_budget_mb) << 20);
     if (!set) return set.error();
     textures.clear();
     layers = std::move(*set);
@@ -461,6 +461,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     }
     LOAM_TRY(r.heights->update(ring, commands, r.frame, r.defaults.height_pages));
     LOAM_TRY(r.indices->update(ring, commands, r.frame, r.defaults.index_pages));
+    LOAM_TRY(r.layers->update(ring, commands, view.goal_ms == 0));
     LOAM_TRY(r.textures.update(ring, commands, view));
     if (r.announced && settings.shading == Shading::virtual_texture)
         LOAM_TRY(r.announced_feedback(ring, commands, settings));
@@ -567,12 +568,12 @@ FrameStatistics Renderer::statistics() const {
     s.passes = r.pass_times;
     s.height = r.heights->map().counters();
     s.index = r.indices->map().counters();
+    s.layers = r.layers->statistics();
     s.memory = {{"height pages (GPU)", r.heights->gpu_bytes()},
                 {"height pages (CPU)", r.heights->cpu_bytes()},
                 {"index pages (GPU)", r.indices->gpu_bytes()},
                 {"virtual texture", s.texture.gpu_bytes},
-                {"layers", r.layers->albedo_reveal.bytes() + r.layers->normal_gloss_occlusion.bytes() +
-                               r.layers->metalness.bytes() + r.layers->distortion.bytes()},
+                {"layers", r.layers->gpu_bytes()},
                 {"shadow atlas", r.shadows->atlas().bytes()},
                 {"frame targets", r.targets.bytes() + r.resolve->tiles().bytes()}};
     return s;

@@ -23,6 +23,7 @@
 #include "runtime/frame/filter_tiles.h"
 #include "runtime/frame/frame_settings.h"
 #include "runtime/gpu/frame_ring.h"
+#include "runtime/texture/layer_set.h"
 #include "runtime/texture/virtual_texture.h"
 
 namespace loam {
@@ -41,6 +42,7 @@ struct RendererDesc {
     // wants smaller pages: a 16 km range along a slope takes 618 (with 320 the ground at the eye's feet was
     // metres off).
     int height_slots = 640, index_slots = 144;
+    int layer_budget_mb = int(LayerSet::kBudgetBytes >> 20);
     // What is 0 here: by quality (sizes), by profile (pages a frame). The format is page_format's.
     VirtualTextureDesc texture{.pages_per_side = 0, .indirection_size = 0, .budget_pages = 0};
     bool shadows = true;
@@ -58,6 +60,7 @@ struct FrameStatistics {
     uint32_t shadow_cascades_drawn = 0, shadow_parts_drawn = 0;  // whole cascades; parts of others
     VirtualTexture::Statistics texture;
     VirtualMap::Counters height, index;
+    LayerSet::Statistics layers;
     std::vector<MemoryRow> memory;
     std::vector<gpu::PassTime> passes;  // of the newest finished frame
 };

@@ -24,6 +24,7 @@ constexpr int probes_of(int taps) {
 constexpr int kHardwareProbes = 2;
 
 void use_material(gpu::Commands& commands, const ResolveInputs& in, bool direct) {
+    LayerArrays& layers = in.layers.arrays(in.layers.direct_tier());
     if (direct)
         commands.use({{in.indices.indices(), Access::fragment_sampled},
                       {in.indices.tints(), Access::fragment_sampled},
@@ -31,9 +32,9 @@ void use_material(gpu::Commands& commands, const ResolveInputs& in, bool direct)
                       {in.indices.page_table(), Access::fragment_sampled},
                       {in.texture.direct_params(), Access::fragment_sampled},
                       {in.texture.direct_places(), Access::fragment_sampled},
-                      {in.layers.albedo_reveal, Access::fragment_sampled},
-                      {in.layers.normal_gloss_occlusion, Access::fragment_sampled},
-                      {in.layers.metalness, Access::fragment_sampled},
+                      {layers.albedo_reveal, Access::fragment_sampled},
+                      {layers.normal_gloss_occlusion, Access::fragment_sampled},
+                      {layers.metalness, Access::fragment_sampled},
                       {in.layers.distortion_map(), Access::fragment_sampled}});
     else
         commands.use({{in.texture.params(), Access::fragment_sampled},
@@ -58,15 +59,16 @@ std::vector<gpu::Bound> cached_material(const ResolveInputs& in, const gpu::Samp
 
 std::vector<gpu::Bound> direct_material(const ResolveInputs& in, bool smooth) {
     constexpr uint32_t s = kMaterialSlot;
-    const gpu::Sampler& layers = smooth ? in.layers.smooth_sampler : in.layers.sampler;
+    const gpu::Sampler& sampler = smooth ? in.layers.smooth_sampler : in.layers.sampler;
+    const LayerArrays& layers = in.layers.arrays(in.layers.direct_tier());
     return {{s, in.texture.direct_params()},
             {s + 1, in.texture.direct_places()},
             {s + 2, in.indices.page_table()},
             {s + 3, in.indices.indices().view(), in.texture.nearest_sampler()},
             {s + 4, in.indices.tints().view(), in.texture.nearest_sampler()},
-            {s + 5, in.layers.albedo_reveal.view(), layers},
-            {s + 6, in.layers.normal_gloss_occlusion.view(), layers},
-            {s + 7, in.layers.metalness.view(), layers},
+            {s + 5, layers.albedo_reveal.view(), sampler},
+            {s + 6, layers.normal_gloss_occlusion.view(), sampler},
+            {s + 7, layers.metalness.view(), sampler},
             {s + 8, *in.decals.buffer, in.decals.offset, in.decals.size_bytes},
             {s + 9, in.layers.distortion_map().view(), in.layers.sampler},
             {s + 10, *in.paints.buffer, in.paints.offset, in.paints.size_bytes},

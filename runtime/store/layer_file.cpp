@@ -25,30 +25,47 @@ int mips_of(int size) {
     return count;
 }
 
-Status read_texture(std::span<const uint8_t>& rest, size_t bytes, std::vector<uint8_t>& out) {
-    out.resize(bytes);
-    return read_part(rest, out);
-}
-
-Result<LayerTextures> read_textures(std::span<const uint8_t> bytes) {
-    if (bytes.size() < kHeadBytes || std::memcmp(bytes.data(), kMagic, 8) != 0)
-        return error("not a layer file");
-    const uint32_t size = read_u32(bytes.data() + 8);
+Result<int> read_head(PartReader& file) {
+    uint8_t head[kHeadBytes];
+    if (!file.read(head).ok() || std::memcmp(head, kMagic, 8) != 0) return error("not a layer file");
+    const uint32_t size = read_u32(head + 8);
     if (size < 4 || size > 4096 || (size & (size - 1)) != 0)
         return error("its size is {} texels, must be a power of two from 4 to 4096", size);
+    return int(size);
+}
+
+Status read_texture(PartReader& file, size_t bytes, std::vector<uint8_t>& out) {
+    out.resize(bytes);
+    return file.read_part(out);
+}
+
+Result<LayerTextures> read_textures(PartReader& file, int first_mip) {
+    const auto size = read_head(file);
+    if (!size.ok()) return size.error();
     LayerTextures textures;
-    textures.size_texels = int(size);
-    textures.mip_count = mips_of(int(size));
-    auto rest = bytes.subspan(kHeadBytes);
+    textures.size_texels = *size;
+    textures.mip_count = mips_of(*size);
     for (int mip = 0; mip < textures.mip_count; ++mip) {
-        const size_t texels = size_t(size >> mip) * size_t(size >> mip);
-        LOAM_TRY(read_texture(rest, 4 * texels, textures.albedo_reveal.emplace_back()));
-        LOAM_TRY(read_texture(rest, 4 * texels, textures.normal_gloss_occlusion.emplace_back()));
-        LOAM_TRY(read_texture(rest, texels, textures.metalness.emplace_back()));
+        const size_t texels = size_t(*size >> mip) * size_t(*size >> mip);
+        auto& albedo = textures.albedo_reveal.emplace_back();
+        auto& normal = textures.normal_gloss_occlusion.emplace_back();
+        auto& metal = textures.metalness.emplace_back();
+        if (mip >= first_mip) {
+            LOAM_TRY(read_texture(file, 4 * texels, albedo));
+            LOAM_TRY(read_texture(file, 4 * texels, normal));
+        } else {
+            LOAM_TRY(file.skip_part());
+            LOAM_TRY(file.skip_part());
+        }
+        if (mip >= first_mip || mip == 0)
+            LOAM_TRY(read_texture(file, texels, metal));
+        else
+            LOAM_TRY(file.skip_part());
+        if (mip == 0)
+            textures.has_metal = std::any_of(metal.begin(), metal.end(), [](uint8_t m) { return m > 0; });
+        if (mip < first_mip) metal.clear();
     }
-    if (!rest.empty()) return error("{} bytes too many at the end", rest.size());
-    const auto& metal = textures.metalness[0];
-    textures.has_metal = std::any_of(metal.begin(), metal.end(), [](uint8_t m) { return m > 0; });
+    if (file.rest_bytes() > 0) return error("{} bytes too many at the end", file.rest_bytes());
     return textures;
 }
 
@@ -66,12 +83,20 @@ Status save_layer(const std::filesystem::path& file, const LayerTextures& textur
     return replace_file(file, bytes);
 }
 
-Result<LayerTextures> load_layer(const std::filesystem::path& file) {
-    const auto bytes = read_file(file);
-    if (!bytes.ok()) return bytes.error();
-    auto textures = read_textures(*bytes);
+Result<LayerTextures> load_layer(const std::filesystem::path& file, int first_mip) {
+    auto reader = PartReader::open(file);
+    if (!reader.ok()) return reader.error();
+    auto textures = read_textures(*reader, first_mip);
     if (!textures.ok()) return error("{}: {}", file.string(), textures.message());
     return textures;
+}
+
+Result<int> layer_size(const std::filesystem::path& file) {
+    auto reader = PartReader::open(file);
+    if (!reader.ok()) return reader.error();
+    const auto size = read_head(*reader);
+    if (!size.ok()) return error("{}: {}", file.string(), size.message());
+    return size;
 }
 
 }  // namespace loam

@@ -22,7 +22,8 @@ namespace loam {
 struct LayerTextures {
     int size_texels = 0;
     int mip_count = 0;                                         // down to 1x1
-    std::vector<std::vector<uint8_t>> albedo_reveal;           // [mip], 4 bytes a texel, row 0 south
+    // [mip], 4 bytes a texel, row 0 south; those that were not loaded are empty.
+    std::vector<std::vector<uint8_t>> albedo_reveal;
     std::vector<std::vector<uint8_t>> normal_gloss_occlusion;  // [mip], 4 bytes a texel
     std::vector<std::vector<uint8_t>> metalness;               // [mip], 1 byte a texel
     bool has_metal = false;                                    // any texel of metalness > 0
@@ -31,6 +32,10 @@ struct LayerTextures {
 // Fills mips 1… of textures whose mip 0 is set (size_texels given).
 void build_layer_mips(LayerTextures& textures);
 [[nodiscard]] Status save_layer(const std::filesystem::path& file, const LayerTextures& textures);
-[[nodiscard]] Result<LayerTextures> load_layer(const std::filesystem::path& file);
+// Mips finer than first_mip are passed over without reading them, but for the finest metalness, which says
+// whether there is any.
+[[nodiscard]] Result<LayerTextures> load_layer(const std::filesystem::path& file, int first_mip = 0);
+// Texels a side, from the file's head alone.
+[[nodiscard]] Result<int> layer_size(const std::filesystem::path& file);
 
 }  // namespace loam

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <utility>
 
 #include "runtime/store/zstd_frame.h"
@@ -34,13 +33,45 @@ void append_part(std::span<const uint8_t> part, std::vector<uint8_t>& bytes) {
     bytes.insert(bytes.end(), frame.begin(), frame.end());
 }
 
-Status read_part(std::span<const uint8_t>& rest, std::span<uint8_t> out) {
-    if (rest.size() < 4) return error("the file is cut short");
-    const uint32_t length = read_u32(rest.data());
-    rest = rest.subspan(4);
-    if (length > rest.size()) return error("the file is cut short");
-    LOAM_TRY(read_zstd_frame(rest.first(length), out));
-    rest = rest.subspan(length);
+Result<PartReader> PartReader::open(const std::filesystem::path& file) {
+    PartReader reader;
+    reader.stream_.open(file, std::ios::binary | std::ios::ate);
+    if (!reader.stream_) return error("cannot read {}: {}", file.string(), std::strerror(errno));
+    reader.rest_ = uint64_t(std::max<std::streamoff>(0, std::streamoff(reader.stream_.tellg())));
+    reader.stream_.seekg(0);
+    return reader;
+}
+
+Status PartReader::read(std::span<uint8_t> out) {
+    if (out.size() > rest_) return error("the file is cut short");
+    stream_.read(reinterpret_cast<char*>(out.data()), std::streamsize(out.size()));
+    if (!stream_) return error("it cannot be read: {}", std::strerror(errno));
+    rest_ -= out.size();
+    return {};
+}
+
+Result<uint32_t> PartReader::part_length() {
+    uint8_t bytes[4];
+    LOAM_TRY(read(bytes));
+    const uint32_t length = read_u32(bytes);
+    if (length > rest_) return error("the file is cut short");
+    return length;
+}
+
+Status PartReader::read_part(std::span<uint8_t> out) {
+    const auto length = part_length();
+    if (!length.ok()) return length.error();
+    std::vector<uint8_t> frame(*length);
+    LOAM_TRY(read(frame));
+    return read_zstd_frame(frame, out);
+}
+
+Status PartReader::skip_part() {
+    const auto length = part_length();
+    if (!length.ok()) return length.error();
+    stream_.seekg(*length, std::ios::cur);
+    if (!stream_) return error("it cannot be read: {}", std::strerror(errno));
+    rest_ -= *length;
     return {};
 }
 
@@ -95,17 +126,6 @@ Status replace_file(const std::filesystem::path& file, std::span<const uint8_t> 
     if (!replaced.ok()) return replaced.error();
     LOAM_TRY(replaced->append(bytes));
     return replaced->commit();
-}
-
-Result<std::vector<uint8_t>> read_file(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary | std::ios::ate);
-    if (!stream) return error("cannot read {}: {}", file.string(), std::strerror(errno));
-    const auto length = std::streamoff(stream.tellg());
-    std::vector<uint8_t> bytes(size_t(std::max<std::streamoff>(0, length)));
-    stream.seekg(0);
-    stream.read(reinterpret_cast<char*>(bytes.data()), std::streamsize(bytes.size()));
-    if (!stream && !bytes.empty()) return error("cannot read {}: {}", file.string(), std::strerror(errno));
-    return bytes;
 }
 
 }  // namespace loam

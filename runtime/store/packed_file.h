@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <span>
 #include <vector>
 
@@ -16,8 +17,22 @@ void append_u32(uint32_t value, std::vector<uint8_t>& bytes);
 [[nodiscard]] uint32_t read_u32(const uint8_t* bytes);
 
 void append_part(std::span<const uint8_t> part, std::vector<uint8_t>& bytes);
-// Takes the part off the front of `rest`; it must hold exactly out.size() bytes.
-[[nodiscard]] Status read_part(std::span<const uint8_t>& rest, std::span<uint8_t> out);
+
+// A file read from front to back. Its sentences leave out its name, which the caller knows.
+class PartReader {
+  public:
+    [[nodiscard]] static Result<PartReader> open(const std::filesystem::path& file);
+    [[nodiscard]] Status read(std::span<uint8_t> out);
+    // The next part; it must hold exactly out.size() bytes.
+    [[nodiscard]] Status read_part(std::span<uint8_t> out);
+    [[nodiscard]] Status skip_part();  // without reading what is in it
+    [[nodiscard]] uint64_t rest_bytes() const { return rest_; }
+
+  private:
+    Result<uint32_t> part_length();
+    std::ifstream stream_;
+    uint64_t rest_ = 0;
+};
 
 // A file written beside the old one, then put in its place: whatever happens, one of both is there whole.
 class ReplacedFile {
@@ -39,6 +54,5 @@ class ReplacedFile {
     uint64_t size_bytes_ = 0;
 };
 [[nodiscard]] Status replace_file(const std::filesystem::path& file, std::span<const uint8_t> bytes);
-[[nodiscard]] Result<std::vector<uint8_t>> read_file(const std::filesystem::path& file);
 
 }  // namespace loam

@@ -18,30 +18,28 @@ constexpr char kMagic[] = "LOAMSTP1";
 constexpr size_t kHeadBytes = 20;
 constexpr uint32_t kHasColors = 1, kHasCover = 2;
 
-Result<StampImage> read_stamp(std::span<const uint8_t> bytes) {
-    if (bytes.size() < kHeadBytes || std::memcmp(bytes.data(), kMagic, 8) != 0)
-        return error("not a stamp file");
-    const uint32_t width = read_u32(bytes.data() + 8), height = read_u32(bytes.data() + 12);
-    const uint32_t has = read_u32(bytes.data() + 16);
+Result<StampImage> read_stamp(PartReader& file) {
+    uint8_t head[kHeadBytes];
+    if (!file.read(head).ok() || std::memcmp(head, kMagic, 8) != 0) return error("not a stamp file");
+    const uint32_t width = read_u32(head + 8), height = read_u32(head + 12), has = read_u32(head + 16);
     if (width < 1 || height < 1 || width > kMaxStampTexels || height > kMaxStampTexels)
         return error("its size is {} x {} texels, must be 1 to {} a side", width, height, kMaxStampTexels);
     if (has > (kHasColors | kHasCover)) return error("it is of a newer version");
     StampImage image{.width = int(width), .height = int(height), .heights = {}, .colors = {}, .cover = {}};
-    auto rest = bytes.subspan(kHeadBytes);
     const size_t texels = size_t(width) * height;
     std::vector<uint8_t> pairs(2 * texels);
-    LOAM_TRY(read_part(rest, pairs));
+    LOAM_TRY(file.read_part(pairs));
     image.heights.resize(texels);
     for (size_t i = 0; i < texels; ++i) image.heights[i] = uint16_t(pairs[2 * i] | pairs[2 * i + 1] << 8);
     if (has & kHasColors) {
         image.colors.resize(3 * texels);
-        LOAM_TRY(read_part(rest, image.colors));
+        LOAM_TRY(file.read_part(image.colors));
     }
     if (has & kHasCover) {
         image.cover.resize(texels);
-        LOAM_TRY(read_part(rest, image.cover));
+        LOAM_TRY(file.read_part(image.cover));
     }
-    if (!rest.empty()) return error("{} bytes too many at the end", rest.size());
+    if (file.rest_bytes() > 0) return error("{} bytes too many at the end", file.rest_bytes());
     return image;
 }
 
@@ -70,9 +68,9 @@ Status save_stamp(const std::filesystem::path& file, const StampImage& image) {
 }
 
 Result<StampImage> load_stamp(const std::filesystem::path& file) {
-    const auto bytes = read_file(file);
-    if (!bytes.ok()) return bytes.error();
-    auto image = read_stamp(*bytes);
+    auto reader = PartReader::open(file);
+    if (!reader.ok()) return reader.error();
+    auto image = read_stamp(*reader);
     if (!image.ok()) return error("{}: {}", file.string(), image.message());
     return image;
 }

@@ -60,11 +60,34 @@ struct Composer::Placed {
     [[nodiscard]] bool is_second_mip() const { return rect.target.x < 0; }
 };
 
-// What the shaders of a batch read: rectangles, and their squares, kind after kind.
+// What the shaders of a batch read: rectangles, and their squares, run after run: of a tier and a kind.
 struct Composer::Work {
     gpu::UploadSlice rects, tiles;
     uint32_t tile_count = 0;
-    std::array<uint32_t, kKinds> kind_tiles{};
+    std::array<uint32_t, 2 * kKinds> run_tiles{};
+    static size_t run_of(LayerTier tier, int kind) { return size_t(tier) * kKinds + size_t(kind); }
+};
+
+// Where a page lies in its index page.
+struct Composer::IndexWindow {
+    glm::dvec2 origin;  // of its payload, index texels
+    double scale = 1;   // index texels across its payload
+    double reach = 0;   // of distortion, index texels
+
+    // What a rectangle of the page may look at. One texel more on each side than the filter reads: the
+    // shader's floats may fall to the other side of a texel's edge.
+    [[nodiscard]] TexelRect seen(const TexelRect& rect) const {
+        const auto first = [&](int texel, double from) {
+            return std::clamp(int(std::floor(from + (texel - 3.5) / kPagePayload * scale - reach)) - 1, 0,
+                              kIndexTexels - 1);
+        };
+        const auto last = [&](int texel, double from) {
+            return std::clamp(int(std::floor(from + (texel - 4.5) / kPagePayload * scale + reach)) + 3, 1,
+                              kIndexTexels);
+        };
+        return {first(rect.x0, origin.x), first(rect.y0, origin.y), last(rect.x1, origin.x),
+                last(rect.y1, origin.y)};
+    }
 };
 
 double far_log2_begin(double distance_m) {
@@ -224,22 +247,55 @@ std::optional<ComposeJob> Composer::second_mip(const ComposeJob& job) const {
     return mip;
 }
 
-// Where the page lies in its index page, and what each square of the rectangle holds.
-Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min) {
-    Placed placed{.job = job};
+Composer::IndexWindow Composer::index_window(const ComposeJob& job) const {
     const VirtualMap& map = index_.map();
     const WorldRect square = layout_.square(job.page), index_square = map.page_rect(job.index_page);
     const double spacing_m = map.spacing_m(job.index_page.level);
-    const glm::dvec2 origin((square.min_x - index_square.min_x) / spacing_m + kIndexBorder,
-                            (square.min_y - index_square.min_y) / spacing_m + kIndexBorder);
-    const double scale = layout_.page_side_m(job.page) / spacing_m;
+    return {.origin = {(square.min_x - index_square.min_x) / spacing_m + kIndexBorder,
+                       (square.min_y - index_square.min_y) / spacing_m + kIndexBorder},
+            .scale = layout_.page_side_m(job.page) / spacing_m,
+            .reach = layers_.ground.distortion_amplitude_m / spacing_m};
+}
+
+void Composer::add_needs(const ComposeJob& job, LayerNeeds& needs) const {
+    const IndexTexel* texels = index_.resident_page(job.index_page);
+    LOAM_CHECK(texels, "a page is composed from a resident index page only");
+    const TexelRect seen = index_window(job).seen(job.rect);
+    std::vector<bool> met(size_t(layers_.count));
+    for (int y = seen.y0; y < seen.y1; ++y)
+        for (int x = seen.x0; x < seen.x1; ++x)
+            met[std::min(size_t(texels[size_t(y * kIndexTexels + x)].layer), met.size() - 1)] = true;
+    const double texel_m = layout_.texel_m(job.page), size = layers_.size_texels;
+    const bool vista = far_of(job.page).vista > 0;
+    for (uint32_t layer = 0; layer < met.size(); ++layer) {
+        if (!met[layer]) continue;
+        for (const uint32_t side : layers_.sides_of(layer)) {
+            const double scale = vista ? layers_.ground.vista_scale : 1;
+            layers_.add_need(side, std::log2(texel_m * size / (layers_.tiles_m[side] * scale)), needs);
+        }
+    }
+    for (const DecalTexture& texture : decal_textures(document_, layers_, layout_, job.page, job.rect))
+        layers_.add_need(texture.layer, std::log2(texel_m * size / texture.tile_m), needs);
+}
+
+LayerNeeds Composer::needs_of(const ComposeJob& job) const {
+    LayerNeeds needs;
+    add_needs(job, needs);
+    if (const auto mip = second_mip(job)) add_needs(*mip, needs);
+    return needs;
+}
+
+// Where the page lies in its index page, and what each square of the rectangle holds.
+Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min) {
+    Placed placed{.job = job};
+    const IndexWindow window = index_window(job);
     const FarWeights far = far_of(job.page);
     placed.rect = {
         .rect_min = {job.rect.x0, job.rect.y0},
         .rect_size = {job.rect.width(), job.rect.height()},
         .scratch_min = scratch_min,
-        .index_origin = glm::vec2(origin),
-        .index_scale = float(scale),
+        .index_origin = glm::vec2(window.origin),
+        .index_scale = float(window.scale),
         .index_slot = uint32_t(job.index_slot),
         .index_vertex = glm::ivec2(job.index_page.x, job.index_page.y) * kIndexPayload - kIndexBorder,
         .index_level = job.index_page.level,
@@ -253,30 +309,16 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
         .blocks = block_count(job.rect)};
 
     const GroundSettings& ground = layers_.ground;
-    const double reach = ground.distortion_amplitude_m / spacing_m;
-    if (reach > 0) {
+    if (window.reach > 0) {
         const double period_m = ground.distortion_period_m, side_m = layout_.page_side_m(job.page);
+        const WorldRect square = layout_.square(job.page);
         placed.rect.distortion_origin = {phase(square.min_x, period_m), phase(square.min_y, period_m)};
         placed.rect.distortion_scale = float(side_m / period_m);
-        placed.rect.distortion_reach = float(reach);
+        placed.rect.distortion_reach = float(window.reach);
         placed.rect.distortion_lod =
             float(std::log2(layout_.texel_m(job.page) * kDistortionTexels / period_m));
     }
 
-    // One texel more on each side than the filter reads: the shader's floats may fall to the other side of a
-    // texel's edge.
-    const auto first = [&](int texel, double from) {
-        return std::clamp(int(std::floor(from + (texel - 3.5) / kPagePayload * scale - reach)) - 1, 0,
-                          kIndexTexels - 1);
-    };
-    const auto last = [&](int texel, double from) {
-        return std::clamp(int(std::floor(from + (texel - 4.5) / kPagePayload * scale + reach)) + 3, 1,
-                          kIndexTexels);
-    };
-    const auto seen = [&](const TexelRect& rect) {
-        return TexelRect{first(rect.x0, origin.x), first(rect.y0, origin.y), last(rect.x1, origin.x),
-                         last(rect.y1, origin.y)};
-    };
     const IndexTexel* texels = index_.resident_page(job.index_page);
     LOAM_CHECK(texels, "a page is composed from a resident index page only");
     const auto layer_at = [&](int x, int y) {
@@ -299,14 +341,14 @@ Composer::Placed Composer::prepare(const ComposeJob& job, glm::ivec2 scratch_min
                                        (far == FarWeights{} ? 0 : kFarKind)};
     };
     const glm::ivec2 size = placed.rect.rect_size / kTileTexels;
-    const Placed::Tile whole = tile_of(seen(job.rect));
+    const Placed::Tile whole = tile_of(window.seen(job.rect));
     placed.tiles.assign(size_t(size.x) * size_t(size.y), whole);
     if (whole.kind & kOneLayerKind) return placed;
     for (int y = 0; y < size.y; ++y)
         for (int x = 0; x < size.x; ++x) {
             const int x0 = job.rect.x0 + x * kTileTexels, y0 = job.rect.y0 + y * kTileTexels;
             placed.tiles[size_t(y) * size_t(size.x) + size_t(x)] =
-                tile_of(seen({x0, y0, x0 + kTileTexels, y0 + kTileTexels}));
+                tile_of(window.seen({x0, y0, x0 + kTileTexels, y0 + kTileTexels}));
         }
     return placed;
 }
@@ -371,21 +413,22 @@ Composer::Work Composer::upload(gpu::FrameRing& ring, std::span<Placed> batch) {
         rect.first_block = blocks;
         if (!batch[i].is_second_mip()) blocks += rect.blocks * uint32_t(textures_.count);
         work.tile_count += uint32_t(batch[i].tiles.size());
-        for (const Placed::Tile& tile : batch[i].tiles) ++work.kind_tiles[size_t(tile.kind)];
+        for (const Placed::Tile& tile : batch[i].tiles)
+            ++work.run_tiles[Work::run_of(batch[i].job.tier, tile.kind)];
     }
     work.rects = ring.upload(batch.size() * sizeof(shared::ComposeRect));
     work.tiles = ring.upload(work.tile_count * sizeof(shared::ComposeTile));
     auto* rects = work.rects.as<shared::ComposeRect>();
     for (size_t i = 0; i < batch.size(); ++i) rects[i] = batch[i].rect;
-    std::array<shared::ComposeTile*, kKinds> next{};
+    std::array<shared::ComposeTile*, 2 * kKinds> next{};
     auto* tiles = work.tiles.as<shared::ComposeTile>();
-    for (size_t kind = 0; kind < next.size(); tiles += work.kind_tiles[kind++]) next[kind] = tiles;
+    for (size_t run = 0; run < next.size(); tiles += work.run_tiles[run++]) next[run] = tiles;
     for (size_t i = 0; i < batch.size(); ++i) {
         const glm::ivec2 size = batch[i].rect.rect_size / kTileTexels;
         const Placed::Tile* tile = batch[i].tiles.data();
         for (int y = 0; y < size.y; ++y)
             for (int x = 0; x < size.x; ++x, ++tile)
-                *next[size_t(tile->kind)]++ = {
+                *next[Work::run_of(batch[i].job.tier, tile->kind)]++ = {
                     shared::compose_tile_place(uint32_t(i), uint32_t(x), uint32_t(y)), tile->layer};
     }
     return work;
@@ -402,27 +445,31 @@ void Composer::cmd_materials(gpu::FrameRing& ring, gpu::Commands& commands, std:
         for (size_t layer = 0; layer < layer_count; ++layer, ++out) {
             *out = layer_place(square.min_x, square.min_y, layout_.page_side_m(page), layout_.texel_m(page),
                                layers_.tiles_m[layer], layers_.size_texels, layers_.ground.vista_scale);
-            layers_.fill_place(int(layer), *out);
+            layers_.fill_place(int(layer), placed.job.tier, *out);
         }
     }
     gpu::Image& masks = masks_ ? masks_->pages : index_.tints();
+    for (const LayerTier tier : {LayerTier::whole, LayerTier::tail}) {
+        LayerArrays& arrays = layers_.arrays(tier);
+        commands.use({{arrays.albedo_reveal, Access::compute_sampled},
+                      {arrays.normal_gloss_occlusion, Access::compute_sampled},
+                      {arrays.metalness, Access::compute_sampled}});
+    }
     auto pass = commands.pass("texture compose", {{scratch_, Access::compute_storage},
-                                                  {layers_.albedo_reveal, Access::compute_sampled},
-                                                  {layers_.normal_gloss_occlusion, Access::compute_sampled},
-                                                  {layers_.metalness, Access::compute_sampled},
                                                   {index_.indices(), Access::compute_sampled},
                                                   {index_.tints(), Access::compute_sampled},
                                                   {index_.imagery(), Access::compute_sampled},
                                                   {layers_.distortion_map(), Access::compute_sampled},
                                                   {masks, Access::compute_sampled}});
     uint32_t first_tile = 0;
-    for (size_t kind = 0; kind < work.kind_tiles.size(); first_tile += work.kind_tiles[kind++]) {
-        const uint32_t tiles = work.kind_tiles[kind];
+    for (size_t run = 0; run < work.run_tiles.size(); first_tile += work.run_tiles[run++]) {
+        const uint32_t tiles = work.run_tiles[run];
         if (tiles == 0) continue;
-        const gpu::Pipeline& pipeline = masks_ ? mask_material_ : materials_[kind];
-        commands.bind(pipeline, {{0, layers_.albedo_reveal.view(), layers_.sampler},
-                                 {1, layers_.normal_gloss_occlusion.view(), layers_.sampler},
-                                 {2, layers_.metalness.view(), layers_.sampler},
+        const gpu::Pipeline& pipeline = masks_ ? mask_material_ : materials_[run % kKinds];
+        const LayerArrays& arrays = layers_.arrays(LayerTier(run / kKinds));
+        commands.bind(pipeline, {{0, arrays.albedo_reveal.view(), layers_.sampler},
+                                 {1, arrays.normal_gloss_occlusion.view(), layers_.sampler},
+                                 {2, arrays.metalness.view(), layers_.sampler},
                                  {3, index_.indices().view(), nearest_},
                                  {4, index_.tints().view(), nearest_},
                                  {5, *places.buffer, places.offset, places.size_bytes},
@@ -443,8 +490,8 @@ Status Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::
     {
         const auto lock = document_.read_lock();
         for (const Placed& placed : batch) {
-            add_decals(document_, layers_, layout_, placed.job.page, placed.job.rect, placed.rect.scratch_min,
-                       list);
+            add_decals(document_, layers_, placed.job.tier, layout_, placed.job.page, placed.job.rect,
+                       placed.rect.scratch_min, list);
             used = glm::max(used, placed.rect.scratch_min + placed.rect.rect_size);
         }
     }

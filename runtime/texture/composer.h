@@ -41,6 +41,7 @@ struct ComposeJob {
     glm::ivec2 target{0};  // physical page
     MapPage index_page;    // resident and clean
     int index_slot = 0;
+    LayerTier tier = LayerTier::whole;  // of all of the page, whatever part of it this is
 };
 
 class Composer {
@@ -53,6 +54,8 @@ class Composer {
     Status take_settings();
     // What cmd_compose composes of from now on, in pages within masks.index_page; null: the index map.
     Status use_masks(LayerMasks* masks);
+    // What a job reads of the layers, its second mip and its decals with it. Takes the document's ReadLock.
+    [[nodiscard]] LayerNeeds needs_of(const ComposeJob& job) const;
     Status cmd_compose(gpu::FrameRing& ring, gpu::Commands& commands, std::span<const ComposeJob> jobs,
                        PageAtlas& atlas);
 
@@ -73,6 +76,9 @@ class Composer {
     Composer(gpu::Device& device, const Document& document, IndexMap& index, LayerSet& layers,
              const TextureLayout& layout, const PageTextures& textures);
     [[nodiscard]] Result<gpu::Pipeline> material_pipeline(int kind, bool masks) const;
+    struct IndexWindow;
+    [[nodiscard]] IndexWindow index_window(const ComposeJob& job) const;
+    void add_needs(const ComposeJob& job, LayerNeeds& needs) const;
     [[nodiscard]] Placed prepare(const ComposeJob& job, glm::ivec2 scratch_min);
     // What weighs by the distance that a page's texels are meant for.
     struct FarWeights {

@@ -110,9 +110,12 @@ Status DecalPasses::cmd_record(gpu::FrameRing& ring, gpu::Commands& commands, co
     for (size_t which = 0; which < kDecalPasses; ++which) {
         if (list.runs[which].empty()) continue;
         if (!list.paints.empty())
-            commands.use({{layers.albedo_reveal, Access::fragment_sampled},
-                          {layers.normal_gloss_occlusion, Access::fragment_sampled},
-                          {layers.metalness, Access::fragment_sampled}});
+            for (const LayerTier tier : {LayerTier::whole, LayerTier::tail}) {
+                LayerArrays& arrays = layers.arrays(tier);
+                commands.use({{arrays.albedo_reveal, Access::fragment_sampled},
+                              {arrays.normal_gloss_occlusion, Access::fragment_sampled},
+                              {arrays.metalness, Access::fragment_sampled}});
+            }
         auto pass = commands.pass(kPassNames[which], {{scratch, Access::color_target}});
         commands.begin_rendering(used, targets);
         commands.set_viewport(0, 0, kScratchWidth, kScratchHeight);
@@ -121,13 +124,14 @@ Status DecalPasses::cmd_record(gpu::FrameRing& ring, gpu::Commands& commands, co
             for (size_t part = run.even ? 0 : 1; part < (run.even ? 1 : kParts); ++part) {
                 auto made = pipeline(run.kind, part, layers);
                 if (!made.ok()) return made.error();
+                const LayerArrays& arrays = layers.arrays(run.tier);
                 if (is_paint(run.kind))
                     commands.bind(**made, {bound(0, up.paints),
                                            bound(1, up.segments),
                                            bound(2, up.heights),
-                                           {3, layers.albedo_reveal.view(), layers.sampler},
-                                           {4, layers.normal_gloss_occlusion.view(), layers.sampler},
-                                           {5, layers.metalness.view(), layers.sampler}});
+                                           {3, arrays.albedo_reveal.view(), layers.sampler},
+                                           {4, arrays.normal_gloss_occlusion.view(), layers.sampler},
+                                           {5, arrays.metalness.view(), layers.sampler}});
                 else
                     commands.bind(**made, {bound(0, up.marks)});
                 commands.draw(6, run.count, 0, run.first);

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "runtime/document/document.h"
+#include "runtime/texture/layer_set.h"
 #include "runtime/texture/paint_decals.h"
 #include "shaders/document/crater_math.h"
 #include "shaders/document/footprint_math.h"
@@ -79,6 +80,7 @@ DecalPass pass_of(const Operator& op) {
 struct PageDecals {
     const Document& document;
     const LayerSet& layers;
+    LayerTier tier;
     const TextureLayout& layout;
     const PageId& page;
     const TexelRect& rect;
@@ -110,8 +112,8 @@ struct PageDecals {
     void add_to_run(DecalPass pass, DecalKind kind, bool even, size_t index) const {
         auto& runs = list.runs[size_t(pass)];
         if (runs.empty() || runs.back().kind != kind || runs.back().even != even ||
-            runs.back().first + runs.back().count != index)
-            runs.push_back({kind, even, uint32_t(index), 0});
+            runs.back().tier != tier || runs.back().first + runs.back().count != index)
+            runs.push_back({kind, even, tier, uint32_t(index), 0});
         ++runs.back().count;
     }
 
@@ -176,7 +178,7 @@ struct PageDecals {
         const TexelRect quad = covered(bounds);
         if (quad.empty() || !shown(size_m(decal))) return;
         paint(DecalPass::terrain, DecalKind::terrain, decal.material, quad).decal =
-            paint_of(document, layers, decal, origin(0));
+            paint_of(document, layers, tier, decal, origin(0));
     }
     void operator()(const Stamp&) const {}
     void operator()(const SplineDecal& spline) const {
@@ -185,14 +187,14 @@ struct PageDecals {
             const TexelRect quad = covered(piece.line.grown(spline.path->half_width_m()));
             if (quad.empty()) continue;
             paint(DecalPass::splines, DecalKind::spline, spline.material, quad).decal =
-                paint_of(document, layers, spline, piece, origin(0), list.segments);
+                paint_of(document, layers, tier, spline, piece, origin(0), list.segments);
         }
     }
     void operator()(const VolumeDecal& volume, const WorldRect& bounds) const {
         const TexelRect quad = covered(bounds);
         if (quad.empty() || !shown(size_m(volume))) return;
         shared::PaintInstance& instance = paint(DecalPass::volumes, DecalKind::volume, volume.material, quad);
-        instance.decal = paint_of(document, layers, volume, origin(volume.center_m.z));
+        instance.decal = paint_of(document, layers, tier, volume, origin(volume.center_m.z));
         add_ground(document, {square.min_x, square.min_y}, texel_m, quad, volume.center_m.z, instance,
                    list.heights_m);
     }
@@ -240,11 +242,13 @@ struct PictureDecals {
     void operator()(const Footprint& f) const { mark(source_of(f), kDecalFootprint); }
     void operator()(const TerrainDecal& decal, const WorldRect& bounds) const {
         if (shown(size_m(decal), bounds))
-            paint(kPaintTerrain, paint_of(document, layers, decal, view.camera_m), bounds);
+            paint(kPaintTerrain, paint_of(document, layers, layers.direct_tier(), decal, view.camera_m),
+                  bounds);
     }
     void operator()(const VolumeDecal& volume, const WorldRect& bounds) const {
         if (shown(size_m(volume), bounds))
-            paint(kPaintVolume, paint_of(document, layers, volume, view.camera_m), bounds);
+            paint(kPaintVolume, paint_of(document, layers, layers.direct_tier(), volume, view.camera_m),
+                  bounds);
     }
     void operator()(const Stamp&) const {}
     void operator()(const SplineDecal& spline) const {
@@ -253,7 +257,9 @@ struct PictureDecals {
             const bool in_view = std::any_of(view.ground.begin(), view.ground.end(),
                                              [&](const WorldRect& rect) { return rect.overlaps(bounds); });
             if (in_view && shown(size_m(spline), bounds))
-                paint(kPaintSpline, paint_of(document, layers, spline, piece, view.camera_m, out.segments),
+                paint(kPaintSpline,
+                      paint_of(document, layers, layers.direct_tier(), spline, piece, view.camera_m,
+                               out.segments),
                       bounds);
         }
     }
@@ -270,6 +276,14 @@ void visit_decal(const Kinds& kinds, const Operator& op) {
                 kinds(shape);
         },
         op.shape);
+}
+
+WorldRect world_of(const TextureLayout& layout, const PageId& page, const TexelRect& rect) {
+    const WorldRect square = layout.square(page);
+    const double texel_m = layout.texel_m(page);
+    return {
+        square.min_x + (rect.x0 - kPageBorder) * texel_m, square.min_y + (rect.y0 - kPageBorder) * texel_m,
+        square.min_x + (rect.x1 - kPageBorder) * texel_m, square.min_y + (rect.y1 - kPageBorder) * texel_m};
 }
 
 // A pixel's smallest footprint is that of level ground seen from straight above; slopes and the picture's
@@ -289,18 +303,32 @@ TexelRect page_texels(const TextureLayout& layout, const PageId& page, const Wor
             clamped_int(std::ceil(texel(world.max_y, square.min_y)) + 1)};
 }
 
-void add_decals(const Document& document, const LayerSet& layers, const TextureLayout& layout,
+void add_decals(const Document& document, const LayerSet& layers, LayerTier tier, const TextureLayout& layout,
                 const PageId& page, const TexelRect& rect, glm::ivec2 scratch_min, DecalList& list) {
-    const WorldRect square = layout.square(page);
-    const double texel_m = layout.texel_m(page);
-    const WorldRect covered{
-        square.min_x + (rect.x0 - kPageBorder) * texel_m, square.min_y + (rect.y0 - kPageBorder) * texel_m,
-        square.min_x + (rect.x1 - kPageBorder) * texel_m, square.min_y + (rect.y1 - kPageBorder) * texel_m};
     std::vector<const Operator*> operators;
-    document.operators_over_texture(covered, operators);
-    const PageDecals decals{document, layers, layout, page, rect, scratch_min - glm::ivec2(rect.x0, rect.y0),
-                            list};
+    document.operators_over_texture(world_of(layout, page, rect), operators);
+    const PageDecals decals{
+        document, layers, tier, layout, page, rect, scratch_min - glm::ivec2(rect.x0, rect.y0), list};
     for (const Operator* op : operators) visit_decal(decals, *op);
+}
+
+std::vector<DecalTexture> decal_textures(const Document& document, const LayerSet& layers,
+                                         const TextureLayout& layout, const PageId& page,
+                                         const TexelRect& rect) {
+    const auto lock = document.read_lock();
+    std::vector<const Operator*> operators;
+    document.operators_over_texture(world_of(layout, page, rect), operators);
+    std::vector<DecalTexture> textures;
+    for (const Operator* op : operators)
+        std::visit(
+            [&](const auto& shape) {
+                if constexpr (requires { shape.material.channels; })
+                    if (const int layer = layer_of(document, layers, shape.material); layer >= 0)
+                        textures.push_back(
+                            {uint32_t(layer), tile_of(document, layers, shape.material, layer)});
+            },
+            op->shape);
+    return textures;
 }
 
 DirectDecals direct_decals(const Document& document, const LayerSet& layers, const DirectDecalView& view) {

@@ -19,6 +19,7 @@ namespace loam {
 
 class Document;
 class LayerSet;
+enum class LayerTier : uint8_t;
 
 enum class DecalKind : uint8_t { crater, footprint, terrain, spline, volume };
 
@@ -26,6 +27,7 @@ enum class DecalKind : uint8_t { crater, footprint, terrain, spline, volume };
 struct DecalRun {
     DecalKind kind;
     bool even = true;  // one weight a target will do (paint.frag)
+    LayerTier tier{};
     uint32_t first = 0, count = 0;
 };
 
@@ -43,8 +45,17 @@ struct DecalList {
 
 // Appends the decals over `rect` (texels of the page with border); scratch_min is where rect's corner lies in
 // scratch. The caller holds the document's ReadLock.
-void add_decals(const Document& document, const LayerSet& layers, const TextureLayout& layout,
+void add_decals(const Document& document, const LayerSet& layers, LayerTier tier, const TextureLayout& layout,
                 const PageId& page, const TexelRect& rect, glm::ivec2 scratch_min, DecalList& list);
+
+// The layers that decals over `rect` show. Takes the document's ReadLock.
+struct DecalTexture {
+    uint32_t layer;
+    double tile_m;  // size of a repeat
+};
+[[nodiscard]] std::vector<DecalTexture> decal_textures(const Document& document, const LayerSet& layers,
+                                                       const TextureLayout& layout, const PageId& page,
+                                                       const TexelRect& rect);
 
 struct DirectDecalView {
     glm::dvec3 camera_m{0};

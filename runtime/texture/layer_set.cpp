@@ -4,6 +4,7 @@
 #include "runtime/texture/layer_set.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -21,7 +22,10 @@ namespace loam {
 namespace {
 
 constexpr int kMaxLayerTexels = 2048;  // 8 layers of it are 360 MB: enough for texels of 1 mm on a 2 m tile
-constexpr int kThumbnail = 64;
+constexpr int kThumbnailLog2 = 6, kThumbnail = 1 << kThumbnailLog2;
+constexpr int kTailLevel = 3;  // a 64th of the memory, and enough for pages from 3 cm a texel of a 2 m tile
+// A page is composed as sharply as it can be only where its layers are all there at once.
+constexpr int kFewestSlots = 8;
 
 LayerTextures flat_grey() {
     LayerTextures t;
@@ -47,17 +51,14 @@ std::vector<std::string> files_of(const std::vector<LayerEntry>& entries) {
     return files;
 }
 
-Result<std::vector<LayerTextures>> load_all(const Document& document, const std::vector<std::string>& files) {
-    std::vector<LayerTextures> loaded(files.size());
+// What visiting a file says, with the layer that names it.
+template <typename Visit>
+Status visit_files(const Document& document, const std::vector<std::string>& files, const Visit& visit) {
     std::vector<std::string> failures(files.size());
     parallel_ranges(int(files.size()), 1, [&](int begin, int end) {
-        for (int i = begin; i < end; ++i) {
-            auto layer = load_layer(document.folder() / files[size_t(i)]);
-            if (layer.ok())
-                loaded[size_t(i)] = std::move(*layer);
-            else
-                failures[size_t(i)] = layer.message();
-        }
+        for (size_t i = size_t(begin); i < size_t(end); ++i)
+            if (const Status status = visit(i, document.folder() / files[i]); !status.ok())
+                failures[i] = status.message();
     });
     for (size_t i = 0; i < files.size(); ++i)
         if (!failures[i].empty())
@@ -65,7 +66,7 @@ Result<std::vector<LayerTextures>> load_all(const Document& document, const std:
                 if (!entry.blend && entry.file == files[i])
                     return error("cannot load layer \"{}\" from {}: {}", entry.name,
                                  (document.folder() / files[i]).string(), failures[i]);
-    return loaded;
+    return {};
 }
 
 // Row 0 north; nearest texel of the mip that is just large enough; alpha is the reveal map.
@@ -83,164 +84,138 @@ std::vector<uint8_t> make_thumbnail(const LayerTextures& layer) {
     return out;
 }
 
-using Mips = std::vector<std::vector<uint8_t>>;
-
-// Mip `level` of the common size out of a layer's own mips. 1x1 mips are reached by repetition, too: a
-// smaller layer repeats `size` times, so its coarsest mips stay at its own 1x1.
-void fill_mip(const Mips& mips, int own_size, int size, int level, int texel_bytes, uint8_t* out) {
-    const int side = std::max(1, size >> level);
-    // The texels keep their size in the world: level 0 of the set is level `skip` of the layer.
-    const int skip = std::max(0, int(std::lround(std::log2(double(own_size) / size))));
-    const size_t own_level = std::min(mips.size() - 1, size_t(level + skip));
-    const int own_side = std::max(1, own_size >> own_level);
-    for (int y = 0; y < side; ++y)
-        for (int x = 0; x < side; x += own_side) {
-            const int run = std::min(own_side, side - x);
-            std::memcpy(out + size_t(y * side + x) * size_t(texel_bytes),
-                        &mips[own_level][size_t(y % own_side) * size_t(own_side) * size_t(texel_bytes)],
-                        size_t(run) * size_t(texel_bytes));
-        }
-}
-
-struct Target {
-    gpu::Image* image;
-    std::vector<Mips*> layers;
-    int size, texel_bytes;
-    uint64_t offset = 0;
-};
-
 }  // namespace
 
-Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const Document& document) {
+Result<std::unique_ptr<LayerSet>> LayerSet::create(gpu::FrameRing& ring, const Document& document,
+                                                   uint64_t budget_bytes) {
     auto set = std::make_unique<LayerSet>();
-    gpu::Device& device = ring.device();
-    const std::vector<std::string> files = files_of(document.settings().layers);
-    auto loaded = load_all(document, files);
-    if (!loaded.ok()) return loaded.error();
-    std::vector<LayerTextures> layers = std::move(*loaded);
-    if (layers.empty()) layers.push_back(flat_grey());
-    const int slot_count = int(layers.size());
-    int size = 1;
-    for (size_t i = 0; i < layers.size(); ++i) {
-        size = std::max(size, layers[i].size_texels);
-        set->has_metal |= layers[i].has_metal;
-        set->slots_.push_back({i < files.size() ? files[i] : "", 1, make_thumbnail(layers[i])});
-    }
-    size = std::min(size, kMaxLayerTexels);
-    set->size_texels = size;
-    uint32_t mip_count = 1;
-    while (size >> mip_count) ++mip_count;
-
-    const auto make_image = [&](const char* name, VkFormat format, int side, uint32_t mips) {
-        return gpu::Image::create(device,
-                                  {.name = name,
-                                   .format = format,
-                                   .width = uint32_t(side),
-                                   .height = uint32_t(side),
-                                   .mip_count = mips,
-                                   .layer_count = uint32_t(slot_count),
-                                   .array_view = true,
-                                   .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
-    };
-    auto albedo = make_image("layer albedo", VK_FORMAT_R8G8B8A8_SRGB, size, mip_count);
-    if (!albedo.ok()) return albedo.error();
-    auto normal = make_image("layer normal", VK_FORMAT_R8G8B8A8_UNORM, size, mip_count);
-    if (!normal.ok()) return normal.error();
-    auto metal = make_image("layer metalness", VK_FORMAT_R8_UNORM, set->has_metal ? size : 1,
-                            set->has_metal ? mip_count : 1);
-    if (!metal.ok()) return metal.error();
-    set->albedo_reveal = std::move(*albedo);
-    set->normal_gloss_occlusion = std::move(*normal);
-    set->metalness = std::move(*metal);
-
-    // One staging buffer of our own: through the frame ring it would stay for good.
-    std::vector<Target> targets = {{&set->albedo_reveal, {}, size, 4},
-                                   {&set->normal_gloss_occlusion, {}, size, 4}};
-    for (LayerTextures& l : layers) {
-        targets[0].layers.push_back(&l.albedo_reveal);
-        targets[1].layers.push_back(&l.normal_gloss_occlusion);
-    }
-    if (set->has_metal) {
-        targets.push_back({&set->metalness, {}, size, 1});
-        for (LayerTextures& l : layers) targets[2].layers.push_back(&l.metalness);
-    }
-    const auto mip_bytes = [](const Target& t, uint32_t mip) {
-        const uint64_t side = uint64_t(std::max(1, t.size >> mip));
-        return side * side * uint64_t(t.texel_bytes);
-    };
-    uint64_t total = 0;
-    for (Target& t : targets) {
-        t.offset = total;
-        for (uint32_t mip = 0; mip < t.image->mip_count(); ++mip)
-            total += (mip_bytes(t, mip) * uint64_t(slot_count) + 15) / 16 * 16;
-    }
-    // A repeated layer's tile grows with it.
-    for (size_t i = 0; i < layers.size(); ++i)
-        set->slots_[i].repeats = std::max(1.0, double(size) / layers[i].size_texels);
-    auto staging = gpu::Buffer::create(device, {.name = "layer staging",
-                                                .size_bytes = total,
-                                                .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                                .memory = gpu::MemoryUse::upload});
-    if (!staging.ok()) return staging.error();
-    uint8_t* bytes = staging->as<uint8_t>();
-    parallel_ranges(slot_count, 1, [&](int begin, int end) {
-        for (int layer = begin; layer < end; ++layer)
-            for (const Target& t : targets) {
-                uint64_t at = t.offset;
-                for (uint32_t mip = 0; mip < t.image->mip_count(); ++mip) {
-                    fill_mip(*t.layers[size_t(layer)], layers[size_t(layer)].size_texels, t.size, int(mip),
-                             t.texel_bytes, bytes + at + mip_bytes(t, mip) * uint64_t(layer));
-                    at += (mip_bytes(t, mip) * uint64_t(slot_count) + 15) / 16 * 16;
-                }
-            }
-    });
-
     for (const VkSamplerMipmapMode mips : {VK_SAMPLER_MIPMAP_MODE_NEAREST, VK_SAMPLER_MIPMAP_MODE_LINEAR}) {
         auto sampler = gpu::Sampler::create(
-            device,
+            ring.device(),
             {.filter = VK_FILTER_LINEAR, .mip_mode = mips, .address = VK_SAMPLER_ADDRESS_MODE_REPEAT});
         if (!sampler.ok()) return sampler.error();
         (mips == VK_SAMPLER_MIPMAP_MODE_NEAREST ? set->sampler : set->smooth_sampler) = std::move(*sampler);
     }
+    LOAM_TRY(set->load(ring, document, budget_bytes));
+    LOAM_TRY(set->take_settings(ring, document.settings()));
+    return set;
+}
 
+Status LayerSet::load(gpu::FrameRing& ring, const Document& document, uint64_t budget_bytes) {
+    const std::vector<std::string> files = files_of(document.settings().layers);
+    std::vector<int> sizes(files.size());
+    LOAM_TRY(visit_files(document, files, [&](size_t i, const std::filesystem::path& file) -> Status {
+        const auto size = layer_size(file);
+        if (!size.ok()) return size.error();
+        sizes[i] = *size;
+        return {};
+    }));
+    std::vector<LayerTextures> layers(files.size());
+    if (files.empty()) layers.push_back(flat_grey());
+    if (files.empty()) sizes.push_back(layers[0].size_texels);
+    const int size = std::min(*std::max_element(sizes.begin(), sizes.end()), kMaxLayerTexels);
+    size_texels = size;
+
+    LayerArraysDesc whole{
+        .size_texels = size, .first_level = 0, .slot_count = int(layers.size()), .has_metal = true};
+    const auto fitting =
+        int(std::min<uint64_t>(budget_bytes / LayerArrays::slot_bytes(whole), layers.size()));
+    const int tail_texels = std::max(size >> kTailLevel, kThumbnail);
+    const bool streams = fitting < int(layers.size()) && tail_texels < size;
+    const int first_level = streams ? std::countr_zero(uint32_t(size / tail_texels)) : 0;
+    LOAM_TRY(visit_files(document, files, [&](size_t i, const std::filesystem::path& file) -> Status {
+        // A small layer's picture in the palette may want finer mips than its tail has.
+        const int drop = std::max(0, std::countr_zero(uint32_t(sizes[i])) - std::countr_zero(uint32_t(size)));
+        const int first_mip =
+            std::clamp(std::countr_zero(uint32_t(sizes[i])) - kThumbnailLog2, 0, first_level + drop);
+        auto layer = load_layer(file, streams ? first_mip : 0);
+        if (!layer.ok()) return layer.error();
+        layers[i] = std::move(*layer);
+        return {};
+    }));
+    whole.has_metal = false;
+    for (size_t i = 0; i < layers.size(); ++i) {
+        whole.has_metal |= layers[i].has_metal;
+        // A repeated layer's tile grows with it.
+        files_.push_back({i < files.size() ? files[i] : "",
+                          std::max(1.0, double(size) / layers[i].size_texels), make_thumbnail(layers[i])});
+    }
+    has_metal = whole.has_metal;
+    if (streams) whole.slot_count = std::max(fitting, std::min(kFewestSlots, int(layers.size())));
+    auto arrays = LayerArrays::create(ring.device(), whole);
+    if (!arrays.ok()) return arrays.error();
+    whole_ = std::move(*arrays);
+    if (!streams) return fill(ring, whole_, layers);
+
+    LayerArraysDesc tail = whole;
+    tail.first_level = first_level;
+    tail.slot_count = int(layers.size());
+    auto tails = LayerArrays::create(ring.device(), tail);
+    if (!tails.ok()) return tails.error();
+    tail_ = std::move(*tails);
+    stream_ = std::make_unique<LayerStream>(whole_, document.folder(), files);
+    return fill(ring, tail_, layers);
+}
+
+// Through a staging buffer of our own: in the frame ring it would stay for good.
+Status LayerSet::fill(gpu::FrameRing& ring, LayerArrays& arrays, const std::vector<LayerTextures>& layers) {
+    const uint64_t slot_bytes = arrays.slot_bytes();
+    auto staging = gpu::Buffer::create(ring.device(), {.name = "layer staging",
+                                                       .size_bytes = slot_bytes * layers.size(),
+                                                       .usage = VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
+                                                       .memory = gpu::MemoryUse::upload});
+    if (!staging.ok()) return staging.error();
+    parallel_ranges(int(layers.size()), 1, [&](int begin, int end) {
+        for (size_t i = size_t(begin); i < size_t(end); ++i)
+            arrays.write_slot(layers[i], staging->as<uint8_t>() + i * slot_bytes);
+    });
     auto frame = ring.begin();
     if (!frame.ok()) return frame.error();
     gpu::Commands& commands = (*frame)->commands;
-    commands.use({{set->albedo_reveal, gpu::Access::copy_target},
-                  {set->normal_gloss_occlusion, gpu::Access::copy_target},
-                  {set->metalness, gpu::Access::copy_target}});
-    for (const Target& t : targets) {
-        std::vector<VkBufferImageCopy> regions;
-        uint64_t at = t.offset;
-        for (uint32_t mip = 0; mip < t.image->mip_count(); ++mip) {
-            const uint32_t side = uint32_t(std::max(1, t.size >> mip));
-            regions.push_back({.bufferOffset = at,
-                               .bufferRowLength = 0,
-                               .bufferImageHeight = 0,
-                               .imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, mip, 0, uint32_t(slot_count)},
-                               .imageOffset = {},
-                               .imageExtent = {side, side, 1}});
-            at += (mip_bytes(t, mip) * uint64_t(slot_count) + 15) / 16 * 16;
-        }
-        vkCmdCopyBufferToImage(commands.handle(), staging->handle(), t.image->handle(),
-                               VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, uint32_t(regions.size()),
-                               regions.data());
-    }
-    if (auto done = ring.finish(**frame); !done.ok()) return done.error();
-    LOAM_TRY(set->take_settings(ring, document.settings()));
-    return set;
+    commands.use({{arrays.albedo_reveal, gpu::Access::copy_target},
+                  {arrays.normal_gloss_occlusion, gpu::Access::copy_target},
+                  {arrays.metalness, gpu::Access::copy_target}});
+    for (size_t i = 0; i < layers.size(); ++i)
+        arrays.cmd_fill(commands, *staging, i * slot_bytes, uint32_t(i));
+    return ring.finish(**frame);
+}
+
+Status LayerSet::update(gpu::FrameRing& ring, gpu::Commands& commands, bool wait) {
+    return stream_ ? stream_->update(ring, commands, wait) : Status();
+}
+
+LayerSet::Statistics LayerSet::statistics() const {
+    return {int(files_.size()), whole_.desc().slot_count, stream_ ? stream_->load_count() : 0};
+}
+
+void LayerSet::add_need(uint32_t layer, double level, LayerNeeds& needs) const {
+    const uint32_t file = blends_[layer].file;
+    if (std::find(needs.files.begin(), needs.files.end(), file) == needs.files.end())
+        needs.files.push_back(file);
+    needs.tail_suffices &= level >= first_tail_level();
+}
+
+LayerTier LayerSet::tier_of(const LayerNeeds& needs) const {
+    return needs.tail_suffices || !stream_->slots.all_resident(needs.files) ? LayerTier::tail
+                                                                            : LayerTier::whole;
 }
 
 bool LayerSet::has_textures_of(const ProjectSettings& settings) const {
     std::vector<std::string> files = files_of(settings.layers);
     if (files.empty()) files.emplace_back();
-    return std::equal(files.begin(), files.end(), slots_.begin(), slots_.end(),
-                      [](const std::string& file, const Slot& slot) { return file == slot.file; });
+    return std::equal(files.begin(), files.end(), files_.begin(), files_.end(),
+                      [](const std::string& name, const File& file) { return name == file.name; });
 }
 
-void LayerSet::fill_place(int layer, shared::LayerPlace& place) const {
+void LayerSet::fill_place(int layer, LayerTier tier, shared::LayerPlace& place) const {
     const Source& source = blends_[size_t(layer)];
-    place.slot = source.slot;
+    place.slot = source.file;
+    if (stream_ && tier == LayerTier::whole)  // what is in no slot is not looked at
+        place.slot = uint32_t(std::max(0, stream_->slots.slot_of(source.file)));
+    if (stream_ && tier == LayerTier::tail) {
+        place.lod_bias -= float(first_tail_level());
+        place.vista_lod_bias -= float(first_tail_level());
+    }
     place.first = source.first;
     place.second = source.second;
     place.threshold = source.threshold;
@@ -254,8 +229,8 @@ void LayerSet::fill_place(int layer, shared::LayerPlace& place) const {
 void LayerSet::make_thumbnails() {
     thumbnails.clear();
     for (const Source& source : blends_) {
-        std::vector<uint8_t> picture = slots_[blends_[source.first].slot].thumbnail;
-        const std::vector<uint8_t>& over = slots_[blends_[source.second].slot].thumbnail;
+        std::vector<uint8_t> picture = files_[blends_[source.first].file].thumbnail;
+        const std::vector<uint8_t>& over = files_[blends_[source.second].file].thumbnail;
         for (size_t i = 0; i < picture.size(); i += 4) {
             const float cover = source.first == source.second
                                     ? 0.0f
@@ -295,11 +270,11 @@ Status LayerSet::take_settings(gpu::FrameRing& ring, const ProjectSettings& proj
                 source.first = source.second = source.threshold < 0.5f ? source.first : source.second;
             has_transitions = true;
         } else {
-            source.slot = uint32_t(std::find_if(slots_.begin(), slots_.end(),
-                                                [&](const Slot& s) { return s.file == entry.file; }) -
-                                   slots_.begin());
+            source.file = uint32_t(std::find_if(files_.begin(), files_.end(),
+                                                [&](const File& f) { return f.name == entry.file; }) -
+                                   files_.begin());
         }
-        tiles_m.push_back(entry.tile_m * slots_[source.slot].repeats);
+        tiles_m.push_back(entry.tile_m * files_[source.file].repeats);
         blends_.push_back(source);
     }
     make_thumbnails();

@@ -20,21 +20,16 @@ float phase_of(double repeats) {
 }
 
 // What the kinds share; returns the size of a repeat of the layer.
-double set_material(const Document& document, const LayerSet& layers, const DecalMaterial& m,
+double set_material(const Document& document, const LayerSet& layers, LayerTier tier, const DecalMaterial& m,
                     shared::PaintDecal& out) {
-    const int layer = m.layer.empty() ? -1 : std::min(document.layer_index(m.layer), layers.count - 1);
-    out.layer = -1;
-    double tile_m = 1;
-    if (layer >= 0) {
-        shared::LayerPlace place{};
-        layers.fill_place(layer, place);
-        out.layer = int(place.slot);
-        tile_m = layers.tiles_m[size_t(layer)];
-        // A repeated small layer's whole texture is larger than its tile: the share stays.
-        if (m.tile_m > 0) tile_m *= m.tile_m / document.settings().layers[size_t(layer)].tile_m;
-    }
+    const int layer = layer_of(document, layers, m);
+    const double tile_m = layer < 0 ? 1 : tile_of(document, layers, m, layer);
+    shared::LayerPlace place{};
+    place.lod_bias = float(std::log2(layers.size_texels / tile_m));
+    if (layer >= 0) layers.fill_place(layer, tier, place);
+    out.layer = layer < 0 ? -1 : int(place.slot);
     out.tiles_per_m = float(1.0 / tile_m);
-    out.lod_bias = float(std::log2(layers.size_texels / tile_m));
+    out.lod_bias = place.lod_bias;
     out.colour = {float(linear_of_srgb(m.colour.x)), float(linear_of_srgb(m.colour.y)),
                   float(linear_of_srgb(m.colour.z))};
     out.gloss = float(m.gloss);
@@ -67,10 +62,21 @@ void set_box(VolumeAxes axes, glm::dvec3 half_m, glm::dvec3 center_rel_m, double
 
 }  // namespace
 
-shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, const TerrainDecal& decal,
-                            glm::dvec3 origin_m) {
+int layer_of(const Document& document, const LayerSet& layers, const DecalMaterial& material) {
+    return material.layer.empty() ? -1 : std::min(document.layer_index(material.layer), layers.count - 1);
+}
+
+double tile_of(const Document& document, const LayerSet& layers, const DecalMaterial& material, int layer) {
+    const double tile_m = layers.tiles_m[size_t(layer)];
+    // A repeated small layer's whole texture is larger than its tile: the share stays.
+    return material.tile_m > 0 ? tile_m * material.tile_m / document.settings().layers[size_t(layer)].tile_m
+                               : tile_m;
+}
+
+shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, LayerTier tier,
+                            const TerrainDecal& decal, glm::dvec3 origin_m) {
     shared::PaintDecal out{};
-    const double tile_m = set_material(document, layers, decal.material, out);
+    const double tile_m = set_material(document, layers, tier, decal.material, out);
     const double s = std::sin(decal.heading_rad), c = std::cos(decal.heading_rad);
     set_box({{c, -s, 0}, {s, c, 0}, {0, 0, 1}}, {decal.half_m.x, decal.half_m.y, 1},
             {decal.x_m - origin_m.x, decal.y_m - origin_m.y, 0}, tile_m, out);
@@ -78,20 +84,20 @@ shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, co
     return out;
 }
 
-shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, const VolumeDecal& volume,
-                            glm::dvec3 origin_m) {
+shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, LayerTier tier,
+                            const VolumeDecal& volume, glm::dvec3 origin_m) {
     shared::PaintDecal out{};
-    const double tile_m = set_material(document, layers, volume.material, out);
+    const double tile_m = set_material(document, layers, tier, volume.material, out);
     set_box(axes_of(volume), volume.half_m, volume.center_m - origin_m, tile_m, out);
     out.ellipse = volume.outline == DecalOutline::ellipse;
     return out;
 }
 
-shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, const SplineDecal& spline,
-                            const SplinePiece& piece, glm::dvec3 origin_m,
+shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, LayerTier tier,
+                            const SplineDecal& spline, const SplinePiece& piece, glm::dvec3 origin_m,
                             std::vector<shared::PaintSegment>& segments) {
     shared::PaintDecal out{};
-    const double tile_m = set_material(document, layers, spline.material, out);
+    const double tile_m = set_material(document, layers, tier, spline.material, out);
     out.length_m = float(spline.path->length_m());
     out.fade_m = float(spline.fade_m);
     out.first_segment = uint32_t(segments.size());

@@ -16,14 +16,20 @@ namespace loam {
 
 class Document;
 class LayerSet;
+enum class LayerTier : uint8_t;
+
+// The layer whose textures a material shows; -1: a flat colour. And the size of a repeat of them.
+[[nodiscard]] int layer_of(const Document& document, const LayerSet& layers, const DecalMaterial& material);
+[[nodiscard]] double tile_of(const Document& document, const LayerSet& layers, const DecalMaterial& material,
+                             int layer);
 
 // A decal that lies on the ground at `origin_m`'s frame: the segments of a spline's piece are appended to
 // `segments`.
-[[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers,
+[[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, LayerTier tier,
                                           const TerrainDecal& decal, glm::dvec3 origin_m);
-[[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers,
+[[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, LayerTier tier,
                                           const VolumeDecal& volume, glm::dvec3 origin_m);
-[[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers,
+[[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, LayerTier tier,
                                           const SplineDecal& spline, const SplinePiece& piece,
                                           glm::dvec3 origin_m, std::vector<shared::PaintSegment>& segments);
 

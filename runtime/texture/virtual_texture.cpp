@@ -201,7 +201,7 @@ void VirtualTexture::Impl::cmd_direct(gpu::Commands& commands, const TextureView
         places.push_back(
             Composer::layer_place(camera.sector.x * kSectorSize_m, camera.sector.y * kSectorSize_m, 1.0, 1.0,
                                   layers.tiles_m[size_t(layer)], layers.size_texels, ground.vista_scale));
-        layers.fill_place(layer, places.back());
+        layers.fill_place(layer, layers.direct_tier(), places.back());
     }
     commands.use({{direct_params, Access::copy_target}, {direct_places, Access::copy_target}});
     vkCmdUpdateBuffer(commands.handle(), direct_params.handle(), 0, sizeof d, &d);

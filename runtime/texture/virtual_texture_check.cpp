@@ -14,7 +14,7 @@ namespace {
 
 using gpu::Access;
 constexpr uint32_t kPagesX = 4, kPagesY = 2, kPagesAtOnce = kPagesX * kPagesY;
-constexpr int kIndexPatience = 16;  // frames to wait for the index pages of a group
+constexpr int kPatience = 16;  // frames to wait for the inputs of a group
 
 // Both mips of a page of one texture, copied to a buffer; returns the bytes written.
 uint64_t cmd_copy_page(gpu::Commands& commands, const gpu::Image& image, glm::ivec2 page, gpu::Buffer& out,
@@ -53,23 +53,31 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
         if (t.pool.place(i).state != PagePool::State::free && !t.pool.place(i).low_res) places.push_back(i);
     uint32_t stale = 0;
     uint64_t index_frame = t.view_frame;
-    for (size_t first = 0; first < places.size(); first += kPagesAtOnce) {
-        const size_t count = std::min<size_t>(kPagesAtOnce, places.size() - first);
+    t.stale_inputs.clear();  // of the last update; index pages are brought up to date here
+    // The layers of several pages may not be there at once.
+    const size_t at_once = t.layers.streams() ? 1 : kPagesAtOnce;
+    for (size_t first = 0; first < places.size(); first += at_once) {
+        const size_t count = std::min(at_once, places.size() - first);
         bool compared = false;
-        for (int attempt = 0; attempt < kIndexPatience && !compared; ++attempt) {
+        for (int attempt = 0; attempt < kPatience && !compared; ++attempt) {
             auto frame = ring.begin();
             if (!frame.ok()) return frame.error();
             gpu::Commands& commands = (*frame)->commands;
             for (size_t i = 0; i < count; ++i)
                 t.index.request(t.index_page(t.pool.place(places[first + i]).page), 1.0e9f);
             LOAM_TRY(t.index.update(ring, commands, ++index_frame, int(kPagesAtOnce)));
+            LOAM_TRY(t.layers.update(ring, commands, true));
             std::vector<ComposeJob> jobs;
             for (size_t i = 0; i < count; ++i) {
                 const int place = places[first + i];
-                ComposeJob job = t.make_job(place, {0, 0, kPageTexels, kPageTexels},
-                                            t.index_page(t.pool.place(place).page));
+                const PageId& page = t.pool.place(place).page;
+                const MapPage from = t.index_page(page);
+                if (t.index.map().slot_of(from) < 0) continue;
+                const Impl::Inputs inputs = t.inputs_of(page, 1);
+                if (inputs.page != from || inputs.state != Impl::InputState::ready) continue;
+                ComposeJob job = t.make_job(place, {0, 0, kPageTexels, kPageTexels}, inputs);
                 job.target = {int(i % kPagesX), int(i / kPagesX)};
-                if (job.index_slot >= 0) jobs.push_back(job);
+                jobs.push_back(job);
             }
             if (jobs.size() == count) {
                 LOAM_TRY(t.composer->cmd_compose(ring, commands, jobs, fresh));
@@ -96,7 +104,7 @@ Result<uint32_t> VirtualTexture::count_stale_pages(gpu::FrameRing& ring) {
             }
             LOAM_TRY(ring.finish(**frame));
         }
-        if (!compared) return error("the index pages of {} texture pages did not become resident", count);
+        if (!compared) return error("the inputs of {} texture pages did not become resident", count);
     }
     return stale;
 }

@@ -40,7 +40,8 @@ std::vector<shared::VtPlaceFacts> VirtualTexture::place_facts(DecalCount decals)
         f.cost = t.facts.cost_pages(i, t.frame);
         if (decals == DecalCount::none) continue;
         DecalList list;
-        add_decals(t.document, t.layers, t.layout, p.page, {0, 0, kPageTexels, kPageTexels}, {0, 0}, list);
+        add_decals(t.document, t.layers, LayerTier::whole, t.layout, p.page, {0, 0, kPageTexels, kPageTexels},
+                   {0, 0}, list);
         f.decals = uint32_t(list.marks.size() + list.paints.size());
     }
     return facts;

@@ -70,16 +70,15 @@ struct VirtualTexture::Impl {
                                  int64_t dirt_texels) const;                    // of the frame's budget
     [[nodiscard]] int choose_missing(int left, std::vector<ComposeJob>& jobs);  // returns what is left then
     void choose_low_res(int left, std::vector<ComposeJob>& jobs);
-    enum class InputState {
-        ready,
-        low_res,
-        absent
-    };  // all there; only a coarser index page; none without dirt
+    // All there; only a coarser index page, or layers' tails; no index page without dirt.
+    enum class InputState { ready, low_res, absent };
     struct Inputs {
         MapPage page;  // what there is
         InputState state;
+        LayerTier tier = LayerTier::whole;
     };
-    [[nodiscard]] Inputs inputs_of(const PageId& page) const;
+    // `priority` is that of its layers, where they have to be waited for.
+    [[nodiscard]] Inputs inputs_of(const PageId& page, float priority) const;
     void touch_tables() {
         for (EyeState& eye : eyes) eye.table_changed = true;
     }
@@ -95,7 +94,7 @@ struct VirtualTexture::Impl {
     [[nodiscard]] MapPage index_page(const PageId& page) const;
     [[nodiscard]] uint32_t indirection_texel(int place, int log2_width) const;
     [[nodiscard]] std::vector<ComposeJob> choose_jobs(const TextureView& view);
-    [[nodiscard]] ComposeJob make_job(int place, const TexelRect& rect, const MapPage& from) const;
+    [[nodiscard]] ComposeJob make_job(int place, const TexelRect& rect, const Inputs& from) const;
     // Wanted pages that were composed from coarser inputs.
     [[nodiscard]] uint32_t low_res_count() const;
     [[nodiscard]] bool shows(const PageId& page, double size_m) const;  // a decal of this size

@@ -12,6 +12,7 @@ namespace loam {
 
 namespace {
 
+constexpr float kDirtFirst = 1.0e6f;    // before the cells that want a page
 constexpr size_t kInputLookahead = 24;  // index pages asked for ahead, of missing pages and of dirty ones
 constexpr TexelRect kWholePage{0, 0, kPageTexels, kPageTexels};
 constexpr uint64_t kHiddenFrames = 8;  // a sector not seen for so long is hidden
@@ -279,37 +280,45 @@ void VirtualTexture::Impl::advance(const TextureView& view) {
     gather_dirty();
 }
 
-ComposeJob VirtualTexture::Impl::make_job(int place, const TexelRect& rect, const MapPage& from) const {
+ComposeJob VirtualTexture::Impl::make_job(int place, const TexelRect& rect, const Inputs& from) const {
     return {pool.place(place).page,
             rect,
             {place % desc.pages_per_side, place / desc.pages_per_side},
-            from,
-            index.map().slot_of(from)};
+            from.page,
+            index.map().slot_of(from.page),
+            from.tier};
 }
 
 // A page is composed only from index pages that have no dirt of their own left: what is in the cache is
 // always a function of the document, never of what happened to be resident. But for low-res pages, which say
-// so.
-VirtualTexture::Impl::Inputs VirtualTexture::Impl::inputs_of(const PageId& page) const {
+// so. Source: Call of Duty talk, "Streamer Connection".
+VirtualTexture::Impl::Inputs VirtualTexture::Impl::inputs_of(const PageId& page, float priority) const {
     const MapPage wanted = index_page(page), there = index.map().finest_resident(wanted);
-    if (index.map().slot_of(there) < 0 || stale_inputs.contains(there)) return {there, InputState::absent};
-    return {there, there == wanted ? InputState::ready : InputState::low_res};
+    const int slot = index.map().slot_of(there);
+    if (slot < 0 || stale_inputs.contains(there)) return {there, InputState::absent};
+    const InputState state = there == wanted ? InputState::ready : InputState::low_res;
+    if (!layers.streams()) return {there, state};
+    if (state == InputState::low_res) return {there, state, LayerTier::tail};
+    const LayerNeeds needs = composer->needs_of({page, kWholePage, {0, 0}, there, slot});
+    // Also where they are there already: until the page has been composed they stay.
+    if (!needs.tail_suffices) layers.slots().want(needs.files, priority);
+    return {there, layers.ready(needs) ? InputState::ready : InputState::low_res, layers.tier_of(needs)};
 }
 
 void VirtualTexture::Impl::choose_dirty(std::vector<ComposeJob>& jobs) {
     std::vector<DirtyPage> ready;
     for (const DirtyPage& d : dirty) {
         const PagePool::Place& p = pool.place(d.place);
-        const InputState state = inputs_of(p.page).state;
+        const InputState state = inputs_of(p.page, float(d.shown) + kDirtFirst).state;
         if (state == InputState::ready || (p.low_res && state == InputState::low_res)) ready.push_back(d);
     }
     ready.resize(dirt_that_fits(ready, budget.texels()));
     for (const DirtyPage& d : ready) {
         const PagePool::Place& p = pool.place(d.place);
-        const Inputs inputs = inputs_of(p.page);
+        const Inputs inputs = inputs_of(p.page, float(d.shown) + kDirtFirst);
         jobs.push_back(make_job(
             d.place, p.low_res ? kWholePage : aligned_out(p.dirty, layers.rect_texels(), kPageTexels),
-            inputs.page));
+            inputs));
         if (inputs.state == InputState::ready) pool.clear_low_res(d.place);
         pool.set_input_level(d.place, inputs.page.level);
         pool.clear_dirty(d.place);
@@ -329,9 +338,12 @@ int VirtualTexture::Impl::pages_left(const TextureView& view, int64_t dirt_texel
 int VirtualTexture::Impl::choose_missing(int left, std::vector<ComposeJob>& jobs) {
     std::vector<PageRequest> still_missing;
     for (const PageRequest& request : missing) {
-        const Inputs inputs = inputs_of(request.page);
-        const int place =
-            left > 0 && inputs.state != InputState::absent ? pool.take(request.page, frame) : -1;
+        if (left <= 0) {
+            still_missing.push_back(request);
+            continue;
+        }
+        const Inputs inputs = inputs_of(request.page, float(request.cells));
+        const int place = inputs.state != InputState::absent ? pool.take(request.page, frame) : -1;
         if (place < 0) {
             still_missing.push_back(request);
             continue;
@@ -340,7 +352,7 @@ int VirtualTexture::Impl::choose_missing(int left, std::vector<ComposeJob>& jobs
         ++counted.pages_composed;
         facts.taken(place);
         if (inputs.state == InputState::low_res) pool.mark_low_res(place, inputs.page.level, frame);
-        jobs.push_back(make_job(place, kWholePage, inputs.page));
+        jobs.push_back(make_job(place, kWholePage, inputs));
     }
     missing = std::move(still_missing);
     return left;
@@ -355,7 +367,7 @@ void VirtualTexture::Impl::choose_low_res(int left, std::vector<ComposeJob>& job
         const PagePool::Place& p = pool.place(i);
         // One that was composed in this frame has clean inputs of its own already.
         if (p.state == PagePool::State::free || !p.low_res || popularity[size_t(i)] == 0) continue;
-        const Inputs inputs = inputs_of(p.page);
+        const Inputs inputs = inputs_of(p.page, float(popularity[size_t(i)]));
         const bool ready = inputs.state == InputState::ready, due = p.retry_frame <= frame;
         if (ready || (due && inputs.state == InputState::low_res && inputs.page.level < p.input_level))
             better.push_back({i, popularity[size_t(i)], p.input_level - inputs.page.level, ready});
@@ -365,8 +377,8 @@ void VirtualTexture::Impl::choose_low_res(int left, std::vector<ComposeJob>& job
     order_low_res(better);
     for (const LowResPage& page : better) {
         if (left-- <= 0) return;
-        const Inputs inputs = inputs_of(pool.place(page.place).page);
-        jobs.push_back(make_job(page.place, kWholePage, inputs.page));
+        const Inputs inputs = inputs_of(pool.place(page.place).page, float(page.popularity));
+        jobs.push_back(make_job(page.place, kWholePage, inputs));
         if (page.final)
             pool.clear_low_res(page.place);
         else

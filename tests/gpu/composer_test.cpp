@@ -414,7 +414,7 @@ TEST_F(ComposerTest, TransitionsChangeLive) {
     World w(small_desc(PageFormat::rgba8), false);
     w.want_some_pages();
     w.run_frames(14);
-    const uint64_t texture_bytes = w.layers->albedo_reveal.bytes();
+    const uint64_t texture_bytes = w.layers->gpu_bytes();
     const auto change = [&](const std::optional<LayerEntry::Blend>& blend) {
         ProjectSettings settings = w.document().settings();
         settings.layers.resize(3);
@@ -443,7 +443,7 @@ TEST_F(ComposerTest, TransitionsChangeLive) {
     const auto all = w.read_u32(w.texture->atlas(0));
     change(LayerEntry::Blend{"grass", "dirt", 0.8, true});
     EXPECT_EQ(w.read_u32(w.texture->atlas(0)), all) << "removed: it shows dirt, which it was nearer to";
-    EXPECT_EQ(w.layers->albedo_reveal.bytes(), texture_bytes);
+    EXPECT_EQ(w.layers->gpu_bytes(), texture_bytes);
 }
 
 // --- feedback ---

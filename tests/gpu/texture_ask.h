@@ -48,6 +48,7 @@ inline std::vector<Answer> ask(World& w, const char* shader, const std::vector<Q
     gpu::Commands& c = frame->commands;
     VirtualTexture& t = *w.texture;
     if (direct) {
+        LayerArrays& layers = w.layers->arrays(w.layers->direct_tier());
         auto pass = c.pass("ask", {{answers, gpu::Access::compute_storage},
                                    {t.direct_params(), gpu::Access::compute_sampled},
                                    {t.direct_places(), gpu::Access::compute_sampled},
@@ -55,9 +56,9 @@ inline std::vector<Answer> ask(World& w, const char* shader, const std::vector<Q
                                    {w.index->indices(), gpu::Access::compute_sampled},
                                    {w.index->tints(), gpu::Access::compute_sampled},
                                    {w.index->imagery(), gpu::Access::compute_sampled},
-                                   {w.layers->albedo_reveal, gpu::Access::compute_sampled},
-                                   {w.layers->normal_gloss_occlusion, gpu::Access::compute_sampled},
-                                   {w.layers->metalness, gpu::Access::compute_sampled},
+                                   {layers.albedo_reveal, gpu::Access::compute_sampled},
+                                   {layers.normal_gloss_occlusion, gpu::Access::compute_sampled},
+                                   {layers.metalness, gpu::Access::compute_sampled},
                                    {w.layers->distortion_map(), gpu::Access::compute_sampled}});
         c.bind(pipeline, {{0, *slice.buffer, slice.offset, queries.size() * sizeof(Query)},
                           {1, answers},
@@ -66,9 +67,9 @@ inline std::vector<Answer> ask(World& w, const char* shader, const std::vector<Q
                           {4, w.index->page_table()},
                           {5, w.index->indices().view(), t.nearest_sampler()},
                           {6, w.index->tints().view(), t.nearest_sampler()},
-                          {7, w.layers->albedo_reveal.view(), w.layers->sampler},
-                          {8, w.layers->normal_gloss_occlusion.view(), w.layers->sampler},
-                          {9, w.layers->metalness.view(), w.layers->sampler},
+                          {7, layers.albedo_reveal.view(), w.layers->sampler},
+                          {8, layers.normal_gloss_occlusion.view(), w.layers->sampler},
+                          {9, layers.metalness.view(), w.layers->sampler},
                           {11, w.layers->distortion_map().view(), w.layers->sampler},
                           {14, w.index->imagery().view(), t.nearest_sampler()}});
         c.push(pipeline, uint32_t(queries.size()));

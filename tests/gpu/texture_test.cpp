@@ -103,7 +103,8 @@ TEST_F(TextureTest, ThePartsOfAPrintCoverWhatItChangesOnce) {
         DecalList list;
         {
             const auto lock = w.document().read_lock();
-            add_decals(w.document(), *w.layers, layout, page, rect, {rect.x0, rect.y0}, list);
+            add_decals(w.document(), *w.layers, LayerTier::whole, layout, page, rect, {rect.x0, rect.y0},
+                       list);
         }
         w.fixture.apply(UndoCommand{});
         std::vector<int> times(256 * 256);

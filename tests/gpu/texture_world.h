@@ -26,13 +26,13 @@ inline void need(const Status& status) {
 }
 
 // Rough: noise of the texel; flat: one colour. Of four layers one has a reveal of 0 and one of 1 everywhere.
-inline LayerTextures make_layer(int seed, bool flat) {
+inline LayerTextures make_layer(int seed, bool flat, int size_texels = 64) {
     LayerTextures t;
-    t.size_texels = 64;
+    t.size_texels = size_texels;
     t.albedo_reveal.resize(1);
     t.normal_gloss_occlusion.resize(1);
     t.metalness.resize(1);
-    for (int i = 0; i < 64 * 64; ++i) {
+    for (int i = 0; i < size_texels * size_texels; ++i) {
         const uint32_t h =
             flat ? uint32_t(seed) * 2654435761u : (uint32_t(i) + uint32_t(seed) * 7919u) * 2654435761u;
         const uint8_t reveal = seed % 4 == 3 ? 255 : seed % 4 == 0 ? 0 : uint8_t((h >> 20) % 255);
@@ -50,16 +50,24 @@ inline LayerTextures make_layer(int seed, bool flat) {
     return t;
 }
 
+struct WorldLayers {
+    int texels = 64;
+    uint64_t budget_bytes = LayerSet::kBudgetBytes;
+};
+
 struct World {
-    explicit World(const VirtualTextureDesc& desc, bool flat_layers = false, const MapFixtureDesc& map = {})
+    explicit World(const VirtualTextureDesc& desc, bool flat_layers = false, const MapFixtureDesc& map = {},
+                   const WorldLayers& set = {})
         : fixture(map) {
         const auto layers_folder = document().folder() / "layers";
         std::filesystem::create_directories(layers_folder);
         int seed = 1;
         for (const LayerEntry& entry : document().settings().layers)
-            if (!entry.blend) need(save_layer(document().folder() / entry.file, make_layer(seed++, flat_layers)));
+            if (!entry.blend)
+                need(save_layer(document().folder() / entry.file,
+                                make_layer(seed++, flat_layers, set.texels)));
         ring = need(gpu::FrameRing::create(gpu::test_device(), 2));
-        layers = need(LayerSet::create(*ring, document()));
+        layers = need(LayerSet::create(*ring, document(), set.budget_bytes));
         index = need(IndexMap::create(&gpu::test_device(), document(), {.slot_count = 64}));
         texture = need(VirtualTexture::create(gpu::test_device(), document(), *index, *layers, desc));
     }
@@ -84,6 +92,7 @@ struct World {
         view.near = near;
         texture->request_inputs(view);
         need(index->update(*ring, commands, frame_number, 8));
+        need(layers->update(*ring, commands, true));
         need(texture->update(*ring, commands, view));
     }
     // Pages around the camera: the finest of its sector, of the default image, and all above them.

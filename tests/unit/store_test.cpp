@@ -166,6 +166,24 @@ TEST(layer_file, comes_back_and_damage_is_found) {
             ASSERT_TRUE(result->albedo_reveal == layer.albedo_reveal && result->metalness == layer.metalness);
         }
     }
+    EXPECT_EQ(take(layer_size(file)), 16);
+    for (int first = 0; first < 5; ++first) {
+        const auto tail = take(load_layer(file, first));
+        EXPECT_TRUE(tail.has_metal) << "one texel of the finest mip says so";
+        for (int mip = 0; mip < 5; ++mip) {
+            const auto i = size_t(mip);
+            const auto want = [&](const std::vector<uint8_t>& whole) {
+                return mip < first ? std::vector<uint8_t>() : whole;
+            };
+            EXPECT_EQ(tail.albedo_reveal[i], want(layer.albedo_reveal[i]));
+            EXPECT_EQ(tail.normal_gloss_occlusion[i], want(layer.normal_gloss_occlusion[i]));
+            EXPECT_EQ(tail.metalness[i], want(layer.metalness[i]));
+        }
+    }
+    write_file(bad, bytes.substr(0, bytes.size() - 1));
+    EXPECT_FALSE(load_layer(bad, 4).ok()) << "cut short, also where the cut is passed over";
+    write_file(bad, bytes.substr(0, 11));
+    EXPECT_FALSE(layer_size(bad).ok());
     EXPECT_NE(load_layer(folder.path() / "none.layer").message().find("No such file"), std::string::npos);
 }
 
