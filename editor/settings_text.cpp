@@ -1,5 +1,9 @@
 #include "editor/settings_text.h"
 
+#include <algorithm>
+
+#include <fmt/ranges.h>
+
 #include "editor/text_numbers.h"
 
 namespace loam {
@@ -27,6 +31,32 @@ constexpr Entry kEntries[] = {
     {"imagery.distance_m", [](ProjectSettings& s) { return &s.imagery.distance_m; }},
 };
 
+Status set_number(double& number, std::string_view name, std::string_view value) {
+    const auto parsed = parse_number(value);
+    if (!parsed) return error("{} is \"{}\", must be a number", name, value);
+    number = *parsed;
+    return {};
+}
+
+constexpr std::string_view kLayer = "layer.";
+
+// The key follows the last dot: names of layers may have some.
+Status set_of_layer(ProjectSettings& settings, std::string_view name, std::string_view value) {
+    const std::string_view rest = name.substr(kLayer.size());
+    const size_t dot = std::min(rest.rfind('.'), rest.size());
+    const std::string_view layer = rest.substr(0, dot), key = rest.substr(std::min(dot + 1, rest.size()));
+    for (LayerEntry& entry : settings.layers) {
+        if (entry.name != layer) continue;
+        if (entry.blend) return error("\"{}\" is a transition: loam transition changes it", layer);
+        if (key == "tile_m") return set_number(entry.tile_m, name, value);
+        for (size_t c = 0; c < kChannelNames.size(); ++c)
+            if (key == kChannelNames[c]) return set_number(entry.channels[c], name, value);
+        return error("a layer has no setting \"{}\" (known: tile_m, {})", key,
+                     fmt::join(kChannelNames, ", "));
+    }
+    return error("the project has no layer \"{}\"", layer);
+}
+
 }  // namespace
 
 std::vector<NamedSetting> named_settings(const ProjectSettings& settings) {
@@ -36,10 +66,20 @@ std::vector<NamedSetting> named_settings(const ProjectSettings& settings) {
         list.push_back({entry.name, entry.number ? fmt::format("{}", *entry.number(copy))
                                     : entry.flag ? fmt::format("{}", *entry.flag(copy))
                                                  : *entry.text(copy)});
+    for (const LayerEntry& layer : settings.layers) {
+        if (layer.blend) continue;
+        const auto add = [&](std::string_view key, double value) {
+            list.push_back({fmt::format("{}{}.{}", kLayer, layer.name, key), fmt::format("{}", value)});
+        };
+        add("tile_m", layer.tile_m);
+        for (const Channel channel : settings.channels)
+            add(kChannelNames[size_t(channel)], layer.channels[size_t(channel)]);
+    }
     return list;
 }
 
 Status set_by_name(ProjectSettings& settings, std::string_view name, std::string_view value) {
+    if (name.starts_with(kLayer)) return set_of_layer(settings, name, value);
     std::string known;
     for (const Entry& entry : kEntries) {
         known += fmt::format("{}{}", known.empty() ? "" : ", ", entry.name);
@@ -54,12 +94,9 @@ Status set_by_name(ProjectSettings& settings, std::string_view name, std::string
             *entry.flag(settings) = value == "true";
             return {};
         }
-        const auto number = parse_number(value);
-        if (!number) return error("{} is \"{}\", must be a number", name, value);
-        *entry.number(settings) = *number;
-        return {};
+        return set_number(*entry.number(settings), name, value);
     }
-    return error("unknown setting \"{}\" (known: {})", name, known);
+    return error("unknown setting \"{}\" (known: {}, layer.NAME.KEY)", name, known);
 }
 
 }  // namespace loam

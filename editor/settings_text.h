@@ -11,7 +11,8 @@
 namespace loam {
 
 struct NamedSetting {
-    std::string name;   // "ground.tile_hiding": table and key of project.toml
+    std::string
+        name;  // "ground.tile_hiding": table and key of project.toml; "layer.grass.tile_m": of a layer
     std::string value;  // as it stands: a number, "true" or "false", or a text
 };
 [[nodiscard]] std::vector<NamedSetting> named_settings(const ProjectSettings& settings);

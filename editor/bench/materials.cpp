@@ -323,7 +323,7 @@ Status add_transition_error(const BenchRequest& request, BenchTable& table) {
 Result<BenchReport> bench_materials(const BenchRequest& request) {
     auto device = gpu::Device::create(request.session.device);
     if (!device) return device.error();
-    BenchReport report(5);
+    BenchReport report(6);
     report[0].title = "A whole page of 8 m, RGBA8, and the picture against the reference (a mosaic of 4 m)";
     LOAM_TRY(add_costs(request, **device, report[0]));
     report[1].title = "Tile hiding: largest autocorrelation at half to one and a half tiles";
@@ -333,6 +333,9 @@ Result<BenchReport> bench_materials(const BenchRequest& request) {
     LOAM_TRY(add_vista_steps(request, **device, report[3]));
     report[4].title = "Layers by an alpha mask each beside the index map: a whole page of 8 m, RGBA8";
     LOAM_TRY(add_masks(request, **device, report[4]));
+    report[5].title = fmt::format("Parallax at {}x{}, everywhere in the picture, against 256 steps",
+                                  request.width, request.height);
+    LOAM_TRY(add_parallax(request, report[5]));
     return report;
 }
 

@@ -99,6 +99,7 @@ struct Stage {
 };
 
 // Tables of `bench materials`.
+Status add_parallax(const BenchRequest& request, BenchTable& table);
 Status add_masks(const BenchRequest& request, gpu::Device& device, BenchTable& table);
 Status add_vista_steps(const BenchRequest& request, gpu::Device& device, BenchTable& table);
 

@@ -229,7 +229,7 @@ void layer_properties(App& app, ui::Ui& ui) {
                                .tooltip = "Metres of ground that its textures cover before they repeat"})
                        .changed;
     constexpr std::array<std::string_view, kChannelNames.size()> kLabels = {"Scattering", "Heat", "Emissive",
-                                                                            "Glint"};
+                                                                            "Glint", "Depth"};
     for (const Channel channel : settings.channels)
         changed |= share_slider(ui, kLabels[size_t(channel)], entry.channels[size_t(channel)]);
     if (changed) app.change_settings(settings);

@@ -48,6 +48,7 @@ struct FrameSettings {
     int most_taps = kMaxTaps;  // anisotropic_tiles: 2, 4 or 8
     glm::dvec2 jitter_px{0, 0};
     float footprint_bias = 0;  // direct shading: log2; supersampling sets it (supersample_bias)
+    int parallax_steps = 16;  // of the search for what lies under the surface (shaders/frame/parallax_math.h)
     int page_budget = -1;      // overrides RendererDesc::page_budget when >= 0
 };
 

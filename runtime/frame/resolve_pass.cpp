@@ -4,6 +4,7 @@
 
 #include "runtime/frame/debug_views.h"
 #include "shaders/frame/debug_io.h"
+#include "shaders/frame/parallax_math.h"
 #include "shaders/frame/tiles_io.h"
 
 namespace loam {
@@ -22,6 +23,12 @@ constexpr int probes_of(int taps) {
 // Probes of hardware anisotropy, for eight to one: a sampler's taps reach half the probe's axis, so two of at
 // most four to one stay within a page's border.
 constexpr int kHardwareProbes = 2;
+
+// Where no layer asks nothing is evaluated.
+int parallax_steps(const LayerSet& layers, const FrameSettings& settings) {
+    constexpr int kMost = 1024;
+    return layers.deepest > 0 ? std::clamp(settings.parallax_steps, 0, kMost) : 0;
+}
 
 void use_material(gpu::Commands& commands, const ResolveInputs& in, bool direct) {
     LayerArrays& layers = in.layers.arrays(in.layers.direct_tier());
@@ -91,6 +98,7 @@ Result<ResolvePass> ResolvePass::create(gpu::Device& device, const LayerSet& lay
     for (const bool at_rest : {false, true}) {
         const FrameSettings settings{.at_rest = at_rest, .filter = at_rest ? resting : moving};
         Variant v = pass.variant(settings, ResolvePart::all, false, false);
+        v.parallax_steps = parallax_steps(layers, settings);
         for (v.taps = v.tiles ? 1 : v.taps; v.taps <= kMaxTaps; v.taps *= 2) {
             if (v.tiles) v.probes = probes_of(v.taps);
             if (auto made = pass.pipeline(v, layers, textures); !made) return made.error();
@@ -167,7 +175,7 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
         // 0: fine shadows, 20: both mips of a page, 21: layers with metal, 22: decals, 23: of materials,
         // 25: texels, 26: taps, 27: look-ups they are shared among, 28: the sampler's own anisotropy, 30, 31:
         // the page's layout and channels, 40: tile hiding, 41: distortion, 42: transitions, 43: layers
-        // between their mips, 44: vista UVs, 45: imagery.
+        // between their mips, 44: vista UVs, 45: imagery, 46: steps of parallax.
         .constants = {{0, v.fine_shadows},
                       {20, v.two_mips},
                       {21, layers.has_metal ? 1u : 0u},
@@ -184,7 +192,8 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
                       {42, layers.has_transitions},
                       {43, v.smooth_layers()},
                       {44, layers.ground.has_vista()},
-                      {45, layers.imagery.is_on()}},
+                      {45, layers.imagery.is_on()},
+                      {46, uint32_t(v.parallax_steps)}},
         .color_formats = {kPictureFormat},
         .depth_format = device_->caps().depth_stencil,
         .stencil = {.enable = true, .compare = VK_COMPARE_OP_EQUAL, .reference = 1, .write_mask = 0}};
@@ -241,7 +250,8 @@ Status ResolvePass::cmd_tiles(gpu::Commands& commands, const ResolveInputs& in, 
 
 Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
                                const FrameSettings& settings, ResolvePart part) {
-    const Variant v = variant(settings, part, in.has_decals, in.has_paints);
+    Variant v = variant(settings, part, in.has_decals, in.has_paints);
+    if (part != ResolvePart::floor) v.parallax_steps = parallax_steps(in.layers, settings);
     const bool floor = part == ResolvePart::floor, direct = settings.shading != Shading::virtual_texture;
     use_material(commands, in, direct);
     if (v.hardware && !anisotropic_.handle()) {
@@ -295,6 +305,7 @@ Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
     shared::ResolvePush push{};
     push.debug_view = uint32_t(settings.debug);
     push.footprint_bias = settings.footprint_bias;
+    push.deepest_m = in.layers.deepest * kParallaxDepth_m;
     if (v.tiles) {
         LOAM_TRY(cmd_tiles(commands, in, v, settings.most_taps, std::move(bound), push));
     } else {

@@ -59,6 +59,7 @@ class ResolvePass {
         bool fine_shadows = false, decals = false, paints = false, tiles = false;
         bool debug = false, map = false;  // map: a debug view of the textures themselves, over the whole picture
         bool two_mips = false, hardware = false;
+        int parallax_steps = 0;
         int taps = 1, probes = 1;  // of the virtual texture, shaders/texture/vt_sample.glsl
         // Pages are made of whole mips of the layers; a pixel at rest is not.
         [[nodiscard]] bool smooth_layers() const { return ground == Ground::direct && fine_shadows; }

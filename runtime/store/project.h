@@ -16,8 +16,10 @@ namespace loam {
 
 // What texture pages can hold beside a material, chosen for a whole map: [texture] channels = ["scattering",
 // …]. Numbered as kChannel… in shaders/texture/page_format.h.
-enum class Channel : uint8_t { scattering, thermal, emissive, glint };
-inline constexpr std::array<const char*, 4> kChannelNames = {"scattering", "thermal", "emissive", "glint"};
+enum class Channel : uint8_t { scattering, thermal, emissive, glint, depth };
+inline constexpr std::array<const char*, 5> kChannelNames = {"scattering", "thermal", "emissive", "glint",
+                                                             "depth"};
+inline constexpr size_t kMostChannelsOfAMap = 4;
 
 struct LayerEntry {
     std::string name;     // "grass"; unique in a project

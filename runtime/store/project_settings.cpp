@@ -138,6 +138,9 @@ Status check_settings(const ProjectSettings& settings) {
     LOAM_TRY(check_blends(settings.layers));
     LOAM_TRY(check_ground(settings));
     LOAM_TRY(check_imagery(settings.imagery));
+    if (settings.channels.size() > kMostChannelsOfAMap)
+        return error("[texture] channels names {}, pages hold {}: leave some out", settings.channels.size(),
+                     kMostChannelsOfAMap);
     for (size_t i = 0; i < settings.channels.size(); ++i)
         for (size_t k = 0; k < i; ++k)
             if (settings.channels[i] == settings.channels[k])

@@ -15,6 +15,7 @@
 #include "runtime/document/document.h"
 #include "runtime/store/layer_file.h"
 #include "runtime/texture/distortion.h"
+#include "runtime/texture/page_format.h"
 #include "shaders/texture/ompv.h"
 
 namespace loam {
@@ -221,8 +222,9 @@ void LayerSet::fill_place(int layer, LayerTier tier, shared::LayerPlace& place) 
     place.threshold = source.threshold;
     place.channels = glm::vec4(0);
     if (size_t(layer) < entries.size())
-        for (size_t c = 0; c < kChannelNames.size(); ++c)
-            place.channels[int(c)] = float(entries[size_t(layer)].channels[c]);
+        for (uint32_t c = 0; c < kChannelCount; ++c)
+            if (const uint32_t at = shared::page_channel_place(placement_, c); at > 0)
+                place.channels[int(at - 1)] = float(entries[size_t(layer)].channels[c]);
 }
 
 // A transition's picture is what its threshold makes of its layers' pictures.
@@ -253,6 +255,11 @@ Status LayerSet::take_settings(gpu::FrameRing& ring, const ProjectSettings& proj
             list.begin());
     };
     entries = project.layers;
+    placement_ = channel_placement(project.channels);
+    deepest = 0;
+    if (shared::page_channel_place(placement_, kChannelDepth) > 0)
+        for (const LayerEntry& layer : entries)
+            if (!layer.blend) deepest = std::max(deepest, float(layer.channels[kChannelDepth]));
     count = int(list.size());
     names.clear();
     tiles_m.clear();

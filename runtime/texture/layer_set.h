@@ -95,6 +95,7 @@ class LayerSet {
         tiles_m;  // world size of the whole texture a layer (a repeated small layer's is larger)
     bool has_metal = false;
     bool has_transitions = false;
+    float deepest = 0;  // greatest amount of depth of a layer, on a map that has the channel; 0: no parallax
     std::vector<std::vector<uint8_t>> thumbnails;  // 64x64 RGBA8 sRGB a layer, row 0 north, for the palette
     std::vector<std::string> names;
 
@@ -113,6 +114,7 @@ class LayerSet {
     void make_thumbnails();
     std::vector<File> files_;
     std::vector<Source> blends_;  // a layer
+    uint32_t placement_ = 0;      // of the map's optional channels in pages
     LayerArrays whole_, tail_;
     std::unique_ptr<LayerStream> stream_;
 };

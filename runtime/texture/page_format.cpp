@@ -8,22 +8,22 @@ namespace loam {
 
 namespace {
 
-// Places in the order of Channel, whatever the order in the project.
-uint32_t placement_of(std::span<const Channel> channels) {
+size_t room(PageFormat format) {
+    return format == PageFormat::bc3x2 ? 0 : format == PageFormat::bc1x3 ? 1 : kMostChannels;
+}
+
+}  // namespace
+
+static_assert(kChannelNames.size() == kChannelCount && kMostChannelsOfAMap == kMostChannels);
+
+// In the order of Channel, whatever the order in the project.
+uint32_t channel_placement(std::span<const Channel> channels) {
     uint32_t placement = 0, place = 0;
     for (uint32_t c = 0; c < kChannelCount; ++c)
         if (std::find(channels.begin(), channels.end(), Channel(c)) != channels.end())
             placement |= ++place << (4 * c);
     return placement;
 }
-
-size_t room(PageFormat format) {
-    return format == PageFormat::bc3x2 ? 0 : format == PageFormat::bc1x3 ? 1 : kChannelCount;
-}
-
-}  // namespace
-
-static_assert(kChannelNames.size() == kChannelCount);
 
 const char* page_format_name(PageFormat format) {
     static constexpr const char* kNames[] = {"bc1", "bc1x4", "bc3", "rgba8"};
@@ -42,7 +42,7 @@ Result<PageTextures> page_textures(PageFormat format, std::span<const Channel> c
     const bool fourth = channels.size() > 1;
     PageTextures t{.format = format,
                    .count = fourth ? 4 : 3,
-                   .placement = placement_of(channels),
+                   .placement = channel_placement(channels),
                    .scratch_layers = fourth ? 4 : 3};
     if (format == PageFormat::bc3x2) {
         t.count = 2;

@@ -20,8 +20,8 @@ enum class PageFormat {
     bc1x4,  // a fourth for up to four optional channels; three where the map has no more than one
     bc3x2,  // two BC3: 2 bytes a texel, each normal component apart from what it is not like; no optional
             // channel
-    rgba8  // the channels of BC1 uncompressed: the comparison, and fast on software devices; as many as there
-           // are
+    rgba8   // the channels of BC1 uncompressed: the comparison, and fast on software devices; up to four
+            // optional channels
 };
 
 struct PageTextures {
@@ -36,6 +36,8 @@ struct PageTextures {
 
 // Refused where the format cannot hold the map's optional channels.
 [[nodiscard]] Result<PageTextures> page_textures(PageFormat format, std::span<const Channel> channels);
+// The word that says where in a page each channel is (shaders/texture/page_format.h).
+[[nodiscard]] uint32_t channel_placement(std::span<const Channel> channels);
 // bc1x4 for bc1x3 where one optional channel is not enough.
 [[nodiscard]] PageFormat format_with_room(PageFormat preferred, size_t channel_count);
 [[nodiscard]] const char* page_format_name(PageFormat format);  // as --format takes it

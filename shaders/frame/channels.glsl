@@ -68,9 +68,9 @@ vec3 glint_light(FrameUniforms u, Surface s, float amount, GroundPlace at, vec3 
     return u.sun_irradiance.rgb * visibility * amount * strength * mix(fine, coarse, size - level);
 }
 
-// channels: scattering, thermal, emissive, glint.
-vec3 channel_light(FrameUniforms u, Surface s, vec4 channels, GroundPlace at, vec3 to_eye, float visibility) {
+vec3 channel_light(FrameUniforms u, Surface s, vec4 places, GroundPlace at, vec3 to_eye, float visibility) {
     vec3 light = vec3(0);
+    vec4 channels = channels_from(places);
     if (page_channel_place(kPageChannels, kChannelScattering) != 0u) light += scattered_light(u, s, channels.x, visibility);
     if (page_channel_place(kPageChannels, kChannelEmissive) != 0u) light += emitted_light(u, channels.z);
     if (page_channel_place(kPageChannels, kChannelGlint) != 0u)

@@ -58,7 +58,7 @@ vec3 debug_color(Pixel p, Surface s, VtSample t, vec3 lit) {
         case kDebugCost:
         case kDebugDecals: return facts_color(push.debug_view, facts_of(t.word)) * light * edge;
         // Shapes show faintly: what the sun warms is a little warmer than what it does not.
-        case kDebugThermal: return heat_color(0.12 * dot(lit, vec3(0.3, 0.6, 0.1)) + 0.88 * t.material.channels.y);
+        case kDebugThermal: return heat_color(0.12 * dot(lit, vec3(0.3, 0.6, 0.1)) + 0.88 * channel_at(t.material.channels, kChannelThermal));
     }
     return lit;
 }

@@ -7,6 +7,7 @@ LOAM_BEGIN_SHARED
 struct ResolvePush {
     uint debug_view;        // DebugView
     float footprint_bias;   // added to log2 of the footprint by direct shading: supersampling filters what a mip would
+    float deepest_m;        // bound of the depth that parallax searches
     uint first_tile;        // tile.vert: where the list of the class begins
     uint tiles_across;      // tile.vert: of the picture
 };

@@ -16,6 +16,6 @@ void main() {
     MaterialSample m = direct_material(queries[i].rel_m, queries[i].log2_texel, queries[i].log2_texel);
     answers[i * 4u] = vec4(m.albedo, m.gloss);
     answers[i * 4u + 1u] = vec4(m.normal, m.occlusion, m.metalness);
-    answers[i * 4u + 2u] = m.channels;
+    answers[i * 4u + 2u] = channels_from(m.channels);
     answers[i * 4u + 3u] = vec4(0);
 }

@@ -19,6 +19,6 @@ void main() {
     VtSample s = vt_sample(sector, offset, queries[i].log2_texel, queries[i].log2_texel, vec2(1.0, 0.0));
     answers[i * 4u] = vec4(s.material.albedo, s.material.gloss);
     answers[i * 4u + 1u] = vec4(s.material.normal, s.material.occlusion, s.material.metalness);
-    answers[i * 4u + 2u] = s.material.channels;
+    answers[i * 4u + 2u] = channels_from(s.material.channels);
     answers[i * 4u + 3u] = vec4(float(s.shown_mip), float(s.id), 0.0, 0.0);
 }

@@ -91,7 +91,7 @@ void main() {
     precise float normal_y = page_encode_normal(m.normal.y);
     imageStore(scratch, ivec3(target, 0), vec4(albedo, 1.0));
     imageStore(scratch, ivec3(target, 1), vec4(m.gloss, normal_x, m.occlusion, 1.0));
-    vec4 places_held = kHasChannels ? channel_places(m.channels) : vec4(0);
+    vec4 places_held = kHasChannels ? m.channels : vec4(0);
     imageStore(scratch, ivec3(target, 2), vec4(m.metalness, normal_y, places_held.x, 1.0));
     if (page_has_fourth(kPageChannels)) imageStore(scratch, ivec3(target, 3), vec4(places_held.yzw, 1.0));
 }

@@ -21,7 +21,8 @@ struct LayerPlace {
     vec2 vista_offset;  // of the magnified lookup (vista.h), as offset, scale and lod_bias of the plain one
     float vista_scale;
     float vista_lod_bias;
-    vec4 channels;   // amounts of scattering, thermal, emissive, glint; of a transition: those of its layers count
+    vec4 channels;  // amounts of the optional channels, by place in pages; of a transition: those of its
+                    // layers count
 };
 
 // A rectangle of a page to be composed and encoded.

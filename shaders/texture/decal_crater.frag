@@ -18,7 +18,6 @@ void main() {
     DecalShade shade = crater_shade(decal, offset_m);
     albedo = shade.albedo;
     surface = shade.surface;
-    vec4 places = channel_places(shade.channels);
-    metal = vec4(shade.metal.rg, places.x, shade.metal.a);
-    channels = vec4(places.yzw, shade.metal.a);
+    metal = vec4(shade.metal.rg, shade.channels.x, shade.metal.a);
+    channels = vec4(shade.channels.yzw, shade.metal.a);
 }

@@ -12,14 +12,14 @@ struct DecalShade {
     vec4 albedo;  // square roots of linear values, weight
     vec4 surface; // gloss, normal x, occlusion; weight
     vec4 metal;   // metalness, normal y, not used; weight
-    vec4 channels; // optional: scattering, thermal, emissive, glint
+    vec4 channels; // optional ones, by place
     float channel_weight; // metal's, or 0 where the channels stay as they are
 };
 
 const vec3 kBurntRoot = vec3(0.17, 0.155, 0.14); // soot: about 2.5 % linear
 const vec3 kDustRoot = vec3(0.60, 0.565, 0.51);  // pulverised rock: about a third
 
-// Soot neither scatters nor sparkles. A hot floor is warm all over, hottest in the middle, and its embers are veins where noise
+// Soot neither scatters nor sparkles, and hides what is below it. A hot floor is warm all over, hottest in the middle, and its embers are veins where noise
 // crosses zero, which become a glow where they are finer than two texels.
 vec4 crater_channels(DecalInstance decal, vec2 offset_m, float scorch) {
     float heat = decal.shape.z;
@@ -31,7 +31,7 @@ vec4 crater_channels(DecalInstance decal, vec2 offset_m, float scorch) {
     float vein = 1.0 - clamp(abs(wide + 0.45 * narrow) * 3.5, 0.0, 1.0);
     precise float hot = scorch * scorch * heat;
     precise float ember = clamp(hot * mix(0.22, vein * (0.65 + 0.5 * narrow), detail), 0.0, 1.0);
-    return vec4(0.0, clamp(max(hot * 0.75, ember), 0.0, 1.0), ember, 0.0);
+    return channel_places(float[kChannelCount](0.0, clamp(max(hot * 0.75, ember), 0.0, 1.0), ember, 0.0, 0.0));
 }
 
 // offset_m: from the crater's centre.

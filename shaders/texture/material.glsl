@@ -27,14 +27,14 @@ struct MaterialSample {
     float gloss;
     float occlusion;
     float metalness;
-    vec4 channels; // optional: scattering, thermal, emissive, glint
+    vec4 channels; // optional ones, by place
 };
 
-// A layer's amounts at a texel: bright ground scatters, cracks (low reveal) glow, crystals on top (high reveal) sparkle; heat lies
-// evenly. `albedo` is linear and tinted.
+// A layer's amounts at a texel: bright ground scatters, cracks (low reveal) glow and are deep, crystals on top (high reveal)
+// sparkle; heat lies evenly. `albedo` is linear and tinted.
 vec4 texel_channels(vec4 amounts, vec3 albedo, float reveal) {
     precise float bright = sqrt(clamp(dot(albedo, vec3(0.25, 0.6, 0.15)), 0.0, 1.0));
-    precise vec4 channels = amounts * vec4(bright, 1.0, 1.0 - reveal, reveal);
+    precise vec4 channels = amounts * channel_places(float[kChannelCount](bright, 1.0, 1.0 - reveal, reveal, 1.0 - reveal));
     return channels;
 }
 

@@ -12,14 +12,14 @@ float channel_at(vec4 places, uint channel) {
     return place == 0u ? 0.0 : places[place - 1u];
 }
 
-// x scattering, y thermal, z emissive, w glint from the four places.
+// What a map holds is carried by place. x scattering, y thermal, z emissive, w glint from the four places:
 vec4 channels_from(vec4 places) {
     return vec4(channel_at(places, kChannelScattering), channel_at(places, kChannelThermal),
                 channel_at(places, kChannelEmissive), channel_at(places, kChannelGlint));
 }
 
-// The other way; places that no channel has are 0.
-vec4 channel_places(vec4 channels) {
+// The other way, all channels in the order of kChannel…; places that no channel has are 0.
+vec4 channel_places(float channels[kChannelCount]) {
     vec4 places = vec4(0);
     for (uint c = 0u; c < kChannelCount; ++c) {
         uint place = page_channel_place(kPageChannels, c);

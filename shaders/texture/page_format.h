@@ -32,13 +32,16 @@ LOAM_BEGIN_SHARED
 #define kChannelThermal 1u
 #define kChannelEmissive 2u
 #define kChannelGlint 3u
-#define kChannelCount 4u
+#define kChannelDepth 4u  // under the surface, of parallax
+#define kChannelCount 5u
+#define kMostChannels 4u  // of a map: the places that pages have
 
 LOAM_INLINE uint page_channel_place(uint placement, uint channel) { return placement >> (4u * channel) & 15u; }
 // Whether layer 3 and its texture exist.
 LOAM_INLINE bool page_has_fourth(uint placement) {
-    return max(max(page_channel_place(placement, 0u), page_channel_place(placement, 1u)),
-               max(page_channel_place(placement, 2u), page_channel_place(placement, 3u))) > 1u;
+    uint last = 0u;
+    for (uint c = 0u; c < kChannelCount; ++c) last = max(last, page_channel_place(placement, c));
+    return last > 1u;
 }
 
 LOAM_INLINE float page_encode_normal(float n) { return (130.0f + 125.0f * n) / 255.0f; }

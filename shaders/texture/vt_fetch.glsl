@@ -55,7 +55,7 @@ struct VtMaterial {
     float gloss;
     float occlusion;
     float metalness;
-    vec4 channels;    // optional: scattering, thermal, emissive, glint
+    vec4 channels;    // optional ones, by place
 };
 
 VtMaterial vt_decode(VtTexels t) {
@@ -72,7 +72,7 @@ VtMaterial vt_decode(VtTexels t) {
         m.metalness = t.c.r;
         m.normal = vec2(page_decode_normal(t.b.g), page_decode_normal(t.c.g));
     }
-    m.channels = kHasChannels ? channels_from(vec4(t.c.b, t.d)) : vec4(0);
+    m.channels = kHasChannels ? vec4(t.c.b, t.d) : vec4(0);
     return m;
 }
 #endif

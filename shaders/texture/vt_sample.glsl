@@ -52,11 +52,16 @@ VtFound vt_find(VtPlace place) {
     return f;
 }
 
+// In the physical textures.
+vec2 vt_page_uv(VtFound f) {
+    vec2 page = vec2(f.word & 0xffu, f.word >> 8u & 0xffu);
+    return (page + f.in_page * (float(kPagePayload) / float(kPageTexels)) + float(kPageBorder) / float(kPageTexels)) *
+           vt.inv_atlas_pages;
+}
+
 // The taps of one page, spaced along the axis (filter_math.h says why they stay within its border); with more than one, squares.
 VtTexels vt_probe(VtPlace place, VtFound f, vec2 axis, float spacing_m) {
-    vec2 page = vec2(f.word & 0xffu, f.word >> 8u & 0xffu);
-    vec2 uv = (page + f.in_page * (float(kPagePayload) / float(kPageTexels)) + float(kPageBorder) / float(kPageTexels)) *
-              vt.inv_atlas_pages;
+    vec2 uv = vt_page_uv(f);
     float lod = clamp(place.wanted - float(f.mip), 0.0, 1.0);
     float in_texels = exp2(-place.log2_finest - float(f.mip)); // of the page's first mip, a metre
     float texel_uv = vt.inv_atlas_pages * (1.0 / float(kPageTexels));

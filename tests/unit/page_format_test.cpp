@@ -32,7 +32,12 @@ TEST(PageFormat, ChannelsHavePlacesOfTheirOwnInTheOrderOfTheirNames) {
     const uint32_t all =
         made(PageFormat::bc1x4, {Channel::glint, Channel::emissive, Channel::thermal, Channel::scattering})
             .placement;
-    for (uint32_t c = 0; c < kChannelCount; ++c) EXPECT_EQ(page_channel_place(all, c), c + 1);
+    for (uint32_t c = 0; c < kMostChannels; ++c) EXPECT_EQ(page_channel_place(all, c), c + 1);
+    EXPECT_EQ(page_channel_place(all, kChannelDepth), 0u);
+    const uint32_t two = made(PageFormat::bc1x4, {Channel::depth, Channel::glint}).placement;
+    EXPECT_EQ(page_channel_place(two, kChannelGlint), 1u);
+    EXPECT_EQ(page_channel_place(two, kChannelDepth), 2u);
+    EXPECT_TRUE(shared::page_has_fourth(two));
     EXPECT_TRUE(shared::page_has_fourth(all));
     const uint32_t one = made(PageFormat::bc1x3, {Channel::glint}).placement;
     EXPECT_EQ(page_channel_place(one, kChannelGlint), 1u);

@@ -83,7 +83,8 @@ TEST(ShaderIo, FrameUniforms) {
 
 TEST(ShaderIo, ResolvePush) {
     expect_layout("ResolvePush", sizeof(shared::ResolvePush),
-                  {AT(ResolvePush, debug_view), AT(ResolvePush, footprint_bias), AT(ResolvePush, first_tile), AT(ResolvePush, tiles_across)});
+                  {AT(ResolvePush, debug_view), AT(ResolvePush, footprint_bias), AT(ResolvePush, deepest_m),
+                   AT(ResolvePush, first_tile), AT(ResolvePush, tiles_across)});
 }
 
 TEST(ShaderIo, ClassifyPush) {

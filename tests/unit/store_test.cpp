@@ -289,7 +289,7 @@ TEST(project, errors_are_sentences_with_the_line) {
         {good + "[ground]\nvista_distance_m = inf\n", ":5: vista_distance_m is inf"},
         {good + "[ground]\ndistortion_period_m = 0\n", ":5: distortion_period_m is 0"},
         {good + "[texture]\nchannels = [\"glow\"]\n",
-         ":5: unknown channel \"glow\" in [texture] (known: scattering, thermal, emissive, glint)"},
+         ":5: unknown channel \"glow\" in [texture] (known: scattering, thermal, emissive, glint, depth)"},
         {good + "[texture]\nchannels = \"glint\"\n", ":5: channels must be a list of names"},
         {good + "[texture]\nchannels = [3]\n", ":5: a channel must be a text in quotes"},
         {good + "[texture]\nchannels = [\"glint\", \"thermal\", \"glint\"]\n",
