@@ -82,14 +82,11 @@ Status Presenter::make_pipelines() {
     return {};
 }
 
-Result<std::vector<ui::TextureId>> Presenter::add_pictures(std::span<const std::vector<uint8_t>> rgba, uint32_t side) {
+Result<ui::TextureId> Presenter::set_picture(ui::TextureId id, std::span<const uint8_t> rgba, uint32_t side) {
+    LOAM_CHECK(rgba.size() == size_t{4} * side * side, "a picture is square");
     gpu::FrameRing& ring = *session_.ring();
-    std::vector<ui::TextureId> ids;
-    auto frame = ring.begin();
-    if (!frame) return frame.error();
-    for (const std::vector<uint8_t>& pixels : rgba) {
-        ids.push_back(0);
-        if (pixels.size() != size_t{4} * side * side) continue;
+    gpu::Image made;
+    if (id == 0) {
         auto image = gpu::Image::create(*session_.device(),
                                         {.name = "layer picture",
                                          .format = VK_FORMAT_R8G8B8A8_UNORM,
@@ -97,14 +94,18 @@ Result<std::vector<ui::TextureId>> Presenter::add_pictures(std::span<const std::
                                          .height = side,
                                          .usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT});
         if (!image) return image.error();
-        gpu::upload_to_image(ring, (*frame)->commands, *image, 0, 0, 0, 0, side, side,
-                             std::as_bytes(std::span<const uint8_t>(pixels)));
-        (*frame)->commands.use({{*image, gpu::Access::fragment_sampled}});
-        ids.back() = ui_->add_image(image->view());
-        pictures_.push_back(std::move(*image));
+        made = std::move(*image);
     }
+    gpu::Image& image = id == 0 ? made : pictures_.at(id);
+    auto frame = ring.begin();
+    if (!frame) return frame.error();
+    gpu::upload_to_image(ring, (*frame)->commands, image, 0, 0, 0, 0, side, side, std::as_bytes(rgba));
+    (*frame)->commands.use({{image, gpu::Access::fragment_sampled}});
     LOAM_TRY(ring.end(**frame));
-    return ids;
+    if (id != 0) return id;
+    id = ui_->add_image(made.view());
+    pictures_.emplace(id, std::move(made));
+    return id;
 }
 
 void Presenter::cmd_draw_picture(gpu::Commands& commands, const SceneFrame& scene) {

@@ -4,6 +4,8 @@
 
 #include <memory>
 #include <optional>
+#include <span>
+#include <unordered_map>
 
 #include "editor/session.h"
 #include "runtime/gpu/swapchain.h"
@@ -27,8 +29,8 @@ class Presenter {
     Presenter(const Presenter&) = delete;
 
     [[nodiscard]] ui::UiRenderer& ui() { return *ui_; }
-    // 64 x 64 RGBA8 pictures of the layers, as ids for the palette.
-    Result<std::vector<ui::TextureId>> add_pictures(std::span<const std::vector<uint8_t>> rgba, uint32_t side);
+    // A layer's RGBA8 picture for the palette: a new one where `id` is 0, else in place of the one there.
+    Result<ui::TextureId> set_picture(ui::TextureId id, std::span<const uint8_t> rgba, uint32_t side);
 
     // False when the window has no area (minimised): nothing was drawn.
     Result<bool> draw(glm::uvec2 size_px, const ui::DrawList& list, ui::GlyphAtlas& atlas, ui::Color background,
@@ -45,7 +47,7 @@ class Presenter {
     std::optional<ui::UiRenderer> ui_;
     gpu::Pipeline same_size_, filtered_;
     gpu::Sampler nearest_, linear_;
-    std::vector<gpu::Image> pictures_;
+    std::unordered_map<ui::TextureId, gpu::Image> pictures_;
 };
 
 } // namespace loam::window

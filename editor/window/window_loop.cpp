@@ -44,7 +44,7 @@ WindowLoop::WindowLoop(const LoopParts& parts)
 }
 
 Result<std::filesystem::path> WindowLoop::run() {
-    LOAM_TRY(add_layer_pictures());
+    LOAM_TRY(show_layer_pictures());
     while (!platform_.should_close() && !app_.quit) {
         wait_for_work();
         LOAM_TRY(iterate());
@@ -115,7 +115,7 @@ Status WindowLoop::iterate() {
 
     if (app_.take_settings_changed()) {
         LOAM_TRY(renderer_.settings_changed(*session_.ring()));
-        LOAM_TRY(add_layer_pictures());
+        LOAM_TRY(show_layer_pictures());
     }
     if (app_.take_quality_changed()) change_quality();
     if (app_.take_scene_changed()) pacer_.changed(now);
@@ -207,16 +207,17 @@ void WindowLoop::announce() {
     app_.scene_changed();
 }
 
-Status WindowLoop::add_layer_pictures() {
-    const LayerSet& layers = renderer_.layers();
-    pictured_layers_.resize(layers.names.size());
-    app_.layer_pictures.resize(layers.names.size());
-    for (size_t i = 0; i < layers.names.size(); ++i) {
-        if (pictured_layers_[i] == layers.names[i]) continue;
-        auto added = presenter_.add_pictures({&layers.thumbnails[i], 1}, 64);
-        if (!added) return added.error();
-        app_.layer_pictures[i] = added->front();
-        pictured_layers_[i] = layers.names[i];
+// Those that changed: a transition's with its threshold.
+Status WindowLoop::show_layer_pictures() {
+    const std::vector<std::vector<uint8_t>>& pictures = renderer_.layers().thumbnails;
+    pictured_layers_.resize(pictures.size());
+    app_.layer_pictures.resize(pictures.size());
+    for (size_t i = 0; i < pictures.size(); ++i) {
+        if (pictured_layers_[i] == pictures[i]) continue;
+        const auto shown = presenter_.set_picture(app_.layer_pictures[i], pictures[i], LayerSet::kThumbnail);
+        if (!shown) return shown.error();
+        app_.layer_pictures[i] = *shown;
+        pictured_layers_[i] = pictures[i];
     }
     return {};
 }
@@ -247,7 +248,7 @@ Status WindowLoop::add_layer() {
         app_.fail(added.message());
         return {};
     }
-    LOAM_TRY(add_layer_pictures());
+    LOAM_TRY(show_layer_pictures());
     app_.layer_added(*added);
     return {};
 }

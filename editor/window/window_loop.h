@@ -39,7 +39,7 @@ class WindowLoop {
     FrameSettings frame_settings() const;
     void change_quality();
     void announce();
-    Status add_layer_pictures(); // of layers that are new since the last call
+    Status show_layer_pictures();  // of layers that are new since the last call
     Status export_picture();
     Status add_layer();
     Status add_imagery();
@@ -60,7 +60,7 @@ class WindowLoop {
     RenderScale scale_;
     ui::Rect viewport_;
     double last_iteration_s_ = 0, waited_s_ = 0, next_frame_s_ = 0, wake_s_ = 0, next_poll_s_ = 0;
-    std::vector<std::string> pictured_layers_;
+    std::vector<std::vector<uint8_t>> pictured_layers_;
     bool build_again_ = true, ready_ = false, drew_moving_ = false;
     int announced_frames_ = 0;
     glm::uvec2 size_px_{0};

@@ -23,7 +23,6 @@ namespace loam {
 namespace {
 
 constexpr int kMaxLayerTexels = 2048;  // 8 layers of it are 360 MB: enough for texels of 1 mm on a 2 m tile
-constexpr int kThumbnailLog2 = 6, kThumbnail = 1 << kThumbnailLog2;
 constexpr int kTailLevel = 3;  // a 64th of the memory, and enough for pages from 3 cm a texel of a 2 m tile
 // A page is composed as sharply as it can be only where its layers are all there at once.
 constexpr int kFewestSlots = 8;
@@ -72,6 +71,7 @@ Status visit_files(const Document& document, const std::vector<std::string>& fil
 
 // Row 0 north; nearest texel of the mip that is just large enough; alpha is the reveal map.
 std::vector<uint8_t> make_thumbnail(const LayerTextures& layer) {
+    constexpr int kThumbnail = LayerSet::kThumbnail;
     size_t mip = 0;
     int size = layer.size_texels;
     for (; size / 2 >= kThumbnail && mip + 1 < layer.albedo_reveal.size(); size /= 2) ++mip;

@@ -96,7 +96,9 @@ class LayerSet {
     bool has_metal = false;
     bool has_transitions = false;
     float deepest = 0;  // greatest amount of depth of a layer, on a map that has the channel; 0: no parallax
-    std::vector<std::vector<uint8_t>> thumbnails;  // 64x64 RGBA8 sRGB a layer, row 0 north, for the palette
+    static constexpr int kThumbnailLog2 = 6, kThumbnail = 1 << kThumbnailLog2;
+    std::vector<std::vector<uint8_t>>
+        thumbnails;  // kThumbnail² RGBA8 sRGB a layer, row 0 north, for the palette
     std::vector<std::string> names;
 
   private:
