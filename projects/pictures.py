@@ -122,11 +122,71 @@ def imagery_picture(project, folder, path):
     project.set("imagery.file", "")
 
 
+def noise(shape, cells, random):
+    """Smooth noise that repeats, 0 … 1: a few octaves of random values between which cosines lead."""
+    out, weight, total = np.zeros(shape), 1.0, 0.0
+    while cells <= shape[0] // 2:
+        values = random.random((cells, cells))
+        at = np.arange(shape[0]) * cells / shape[0]
+        low = at.astype(int)
+        t = (1 - np.cos((at - low) * np.pi)) / 2
+        rows = values[low % cells] * (1 - t)[:, None] + values[(low + 1) % cells] * t[:, None]
+        out += weight * (rows[:, low % cells] * (1 - t) + rows[:, (low + 1) % cells] * t)
+        total, weight, cells = total + weight, weight * 0.55, cells * 2
+    return out / total
+
+
+def ice_layer(folder, size=1024):
+    """Clear ice: stones and silt at its bottom, white cracks that stand in it, frost on top."""
+    random = np.random.default_rng(11)
+    shape = (size, size)
+    bottom, pebbles, frost = noise(shape, 4, random), noise(shape, 24, random), noise(shape, 6, random)
+    crack = np.zeros(shape)
+    for cells, width, strength in ((3, 0.006, 1.0), (6, 0.010, 0.7), (12, 0.014, 0.35)):
+        line = np.abs(noise(shape, cells, random) - 0.5)
+        crack = np.maximum(crack, strength * np.clip(1 - line / width, 0, 1))
+    stones = np.clip((pebbles - 0.52) * 9, 0, 1)
+    colour = np.array([0.10, 0.20, 0.23]) * (0.6 + 0.8 * bottom)[..., None]
+    colour = colour * (1 - stones)[..., None] + np.array([0.34, 0.36, 0.33]) * (stones * (0.5 + pebbles))[..., None]
+    colour = colour * (1 - crack)[..., None] + np.array([0.80, 0.88, 0.92]) * crack[..., None]
+    dust = np.clip((frost - 0.60) * 7, 0, 1)[..., None]
+    colour = colour * (1 - dust) + np.array([0.86, 0.90, 0.94]) * dust
+    height = np.maximum(0.1 + 0.25 * bottom + 0.2 * stones + 0.05 * crack, np.clip((frost - 0.5) * 4, 0, 1))
+    os.makedirs(folder)
+    Image.fromarray((255 * np.sqrt(np.clip(colour, 0, 1))).astype(np.uint8)).save(f"{folder}/ice_Color.png")
+    Image.fromarray((255 * np.clip(height, 0, 1)).astype(np.uint8)).save(f"{folder}/ice_Displacement.png")
+    rough = 60 + 120 * dust[..., 0] + 20 * crack
+    Image.fromarray(np.clip(rough, 0, 255).astype(np.uint8)).save(f"{folder}/ice_Roughness.png")
+    Image.fromarray(np.full(shape + (3,), (128, 128, 255), np.uint8)).save(f"{folder}/ice_NormalGL.png")
+
+
+def ice_picture(source, folder, path):
+    """A frozen pool on a map with the channel of depth: flat ice on the left, deep on the right."""
+    copy = os.path.join(folder, "ice")
+    shutil.copytree(source, copy)
+    with open(f"{copy}/project.toml", "a") as project:
+        project.write('\n[texture]\nchannels = ["depth"]\n')
+    ice_layer(f"{folder}/ice_layer")
+    with loam.open(copy) as project:
+        project.add_layer(f"{folder}/ice_layer", name="ice", tile_m=3)
+        x, y = 2040, 1905
+        project.sculpt("flatten", [(x, y)], radius_m=40, strength=1, target_m=float(project.height(x, y)))
+        project.paint([(x, y)], layer="ice", radius_m=22, hardness=0.9)
+        camera = look(project, (x, y), (x + 2, y + 5), 1.7, fov=60)
+        halves = []
+        for depth in ("0", "0.5"):
+            project.set("layer.ice.depth", depth)
+            halves.append(project.render(camera=camera, size=(1280, 720), supersample=2)[:, :, :3])
+    Image.fromarray(np.hstack([halves[0][:, :640], halves[1][:, 640:]])).save(path, quality=88)
+    print(path)
+
+
 def main(source, out):
     os.makedirs(out, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder:
         copy = os.path.join(folder, "project")
         shutil.copytree(source, copy)
+        ice_picture(source, folder, f"{out}/ice.jpg")
         with loam.open(copy) as project:
             picture(project, look(project, (2000, 1500), (2260, 3000), 150, 40), f"{out}/valley.jpg")
             picture(project, look(project, (3000, 1200), (2600, 1900), 60), f"{out}/ridge.jpg")

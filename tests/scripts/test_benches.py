@@ -134,7 +134,7 @@ def test_filter(plain, tmp_path):
 
 
 def test_materials(plain):
-    (_, pages), (_, hidden), (_, transitions), (_, steps), (_, masks) = bench("materials", plain)
+    (_, pages), (_, hidden), (_, transitions), (_, steps), (_, masks), (_, depth) = bench("materials", plain)
     assert [row["layers"] for row in pages] == [1] * 5 + [4] * 7
     cost = {(row["layers"], row["with"]): row for row in pages}
     assert cost[1, "plain"]["layer lookups a texel"] == 1
@@ -149,6 +149,11 @@ def test_materials(plain):
         assert row["mip 0 rms/255"] == 0
         if row["threshold"] in (0, 1):
             assert row["mip 3 rms/255"] < 1.5
+    for deepest in (0.05, 0.25):
+        rows = [row for row in depth if row["deepest m"] == deepest]
+        assert [row["steps"] for row in rows] == [0, 4, 8, 16, 32]
+        quality = [row["PSNR dB"] for row in rows]
+        assert quality == sorted(quality) and quality[-1] > quality[0] + 10, "more steps err less"
     hard, *soft = masks
     assert hard["rms between, of 255"] < 0.5, "masks of one layer a vertex show what the index map does"
     for row in soft:

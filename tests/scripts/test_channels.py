@@ -128,4 +128,4 @@ def test_what_a_format_cannot_hold_is_refused(plain):
 def test_an_unknown_channel_is_refused(plain):
     choose(plain, "sparkle")
     done = run_loam("info", plain)
-    assert 'unknown channel "sparkle" in [texture] (known: scattering, thermal, emissive, glint)' in fails_with_one_sentence(done)
+    assert 'unknown channel "sparkle" in [texture] (known: scattering, thermal, emissive, glint, depth)' in fails_with_one_sentence(done)
