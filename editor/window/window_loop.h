@@ -39,7 +39,7 @@ class WindowLoop {
     FrameSettings frame_settings() const;
     void change_quality();
     void announce();
-    Status show_layer_pictures();  // of layers that are new since the last call
+    Status show_layer_pictures();  // of layers, that changed since the last call
     Status export_picture();
     Status add_layer();
     Status add_imagery();

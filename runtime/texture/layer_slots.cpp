@@ -46,9 +46,10 @@ std::vector<uint32_t> LayerSlots::take_wishes() {
 }
 
 int LayerSlots::place(uint32_t layer) {
-    const auto value = [&](uint32_t there) {  // of keeping what is in a slot
+    // Of keeping what is in a slot. What is wanted, or came in this round, stays: its copy is under way.
+    const auto value = [&](uint32_t there) {
         if (there == kFree) return std::pair(0, uint64_t(0));
-        return std::pair(layers_[there].wanted ? 2 : 1, layers_[there].used);
+        return std::pair(layers_[there].used == clock_ ? 2 : 1, layers_[there].used);
     };
     const auto slot = std::min_element(slots_.begin(), slots_.end(),
                                        [&](uint32_t a, uint32_t b) { return value(a) < value(b); });

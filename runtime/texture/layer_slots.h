@@ -25,7 +25,7 @@ class LayerSlots {
     // most wanted first: neither there, nor on their way, nor failed.
     [[nodiscard]] std::vector<uint32_t> take_wishes();
     void begin_load(uint32_t layer) { layers_[layer].loading = true; }
-    // A layer that came: its slot, or -1 as long as all are wanted for others.
+    // A layer that came: its slot, or -1 as long as all are wanted for others. None is given twice in a round.
     [[nodiscard]] int place(uint32_t layer);
     void fail(uint32_t layer) { layers_[layer] = {.failed = true}; }
 
@@ -33,7 +33,7 @@ class LayerSlots {
     struct Layer {
         int slot = -1;
         bool loading = false, failed = false, wanted = false;
-        uint64_t used = 0;
+        uint64_t used = 0;  // the last round that wanted it or gave it its slot
     };
     struct Wish {
         float priority;

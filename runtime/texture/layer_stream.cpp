@@ -1,8 +1,5 @@
 #include "runtime/texture/layer_stream.h"
 
-#include <algorithm>
-#include <iterator>
-
 #include "runtime/base/log.h"
 
 namespace loam {

@@ -48,6 +48,20 @@ TEST(layer_slots, what_was_not_used_for_longest_goes) {
     EXPECT_EQ(slots.place(5), -1) << "a layer that comes late finds all slots wanted";
 }
 
+// Their copies into the slot would have no order.
+TEST(layer_slots, no_slot_is_given_twice_in_a_round) {
+    LayerSlots slots(6, 2);
+    slots.want(List{0, 1}, 1);
+    EXPECT_TRUE(serve(slots, slots.take_wishes()).empty());
+    slots.want(List{0}, 1);
+    EXPECT_TRUE(slots.take_wishes().empty());
+    for (const uint32_t late : {2u, 3u}) slots.begin_load(late);  // wanted by nobody any more
+    EXPECT_GE(slots.place(2), 0);
+    EXPECT_EQ(slots.place(3), -1);
+    EXPECT_TRUE(slots.take_wishes().empty());
+    EXPECT_GE(slots.place(3), 0) << "in the next round";
+}
+
 TEST(layer_slots, ready_is_as_good_as_it_gets) {
     LayerSlots slots(6, 2);
     EXPECT_FALSE(slots.ready(List{0, 1}));
