@@ -106,45 +106,69 @@ void note_oddities(const ImageRows& rows, const Decoder& decoder, const WorldRec
             100 * decoder.brightest));
 }
 
-}  // namespace
-
-Result<AddedImagery> add_imagery(Document& document, const AddImageryRequest& request,
-                                 const Progress& progress) {
-    ProjectSettings settings = document.settings();
+ProjectSettings settings_with(const ProjectSettings& now, const AddImageryRequest& request,
+                              const fs::path& file) {
+    ProjectSettings settings = now;
     ImagerySettings& imagery = settings.imagery;
     imagery.strength = request.strength.value_or(imagery.strength);
     imagery.distance_m = request.distance_m.value_or(imagery.distance_m);
-    const fs::path file =
-        free_file(document.folder() / "imagery", request.file.stem().string(), {".imagery"});
     imagery.file = (fs::path("imagery") / file.filename()).string();
-    LOAM_TRY(check_settings(settings));
-    LOAM_TRY(document.check_writable());
+    return settings;
+}
 
-    auto rows = ImageRows::open(request.file);
+}  // namespace
+
+Result<std::unique_ptr<ImageryImport>> ImageryImport::plan(const Document& document,
+                                                           const AddImageryRequest& request) {
+    std::unique_ptr<ImageryImport> import(new ImageryImport);
+    import->request_ = request;
+    import->file_ = free_file(document.folder() / "imagery", request.file.stem().string(), {".imagery"});
+    import->settings_ = settings_with(document.settings(), request, import->file_);
+    LOAM_TRY(check_settings(import->settings_));
+    LOAM_TRY(document.check_writable());
+    return import;
+}
+
+ImageryImport::~ImageryImport() {
+    std::error_code code;
+    if (!adopted_ && !file_.empty()) fs::remove(file_, code);
+}
+
+Status ImageryImport::make(const Progress& progress) {
+    auto rows = ImageRows::open(request_.file);
     if (!rows.ok()) return rows.error();
-    const WorldRect bounds = document.bounds();
-    AddedImagery added{.settings = imagery,
-                       .width = (*rows)->width(),
-                       .height = (*rows)->height(),
-                       .shape = imagery_shape(settings, std::min(bounds.max_x / (*rows)->width(),
-                                                                 bounds.max_y / (*rows)->height())),
-                       .size_bytes = 0,
-                       .notes = {}};
+    const WorldRect bounds = settings_.bounds();
+    added_.width = (*rows)->width();
+    added_.height = (*rows)->height();
+    added_.shape =
+        imagery_shape(settings_, std::min(bounds.max_x / (*rows)->width(), bounds.max_y / (*rows)->height()));
     std::error_code failure;
-    fs::create_directories(file.parent_path(), failure);
-    if (failure) return error("cannot make {}: {}", file.parent_path().string(), failure.message());
-    auto writer = ImageryWriter::create(file, added.shape);
+    fs::create_directories(file_.parent_path(), failure);
+    if (failure) return error("cannot make {}: {}", file_.parent_path().string(), failure.message());
+    auto writer = ImageryWriter::create(file_, added_.shape);
     if (!writer.ok()) return writer.error();
     Decoder decoder(**rows);
-    LOAM_TRY(write_rows(**rows, decoder, bounds, added.shape, **writer, progress));
+    LOAM_TRY(write_rows(**rows, decoder, bounds, added_.shape, **writer, progress));
     LOAM_TRY((*writer)->finish());
-    added.size_bytes = (*writer)->size_bytes();
-    note_oddities(**rows, decoder, bounds, added);
-    if (const Status changed = document.change_settings(settings); !changed.ok()) {
-        fs::remove(file, failure);
-        return changed.error();
-    }
-    return added;
+    added_.size_bytes = (*writer)->size_bytes();
+    note_oddities(**rows, decoder, bounds, added_);
+    return {};
+}
+
+Result<AddedImagery> ImageryImport::adopt(Document& document) {
+    const ProjectSettings settings = settings_with(document.settings(), request_, file_);
+    LOAM_TRY(document.change_settings(settings));
+    added_.settings = settings.imagery;
+    adopted_ = true;
+    return added_;
+}
+
+Result<AddedImagery> add_imagery(Document& document, const AddImageryRequest& request,
+                                 const Progress& progress) {
+    auto import = ImageryImport::plan(document, request);
+    if (!import) return import.error();
+    LOAM_TRY((*import)->make(progress));
+    return (*import)->adopt(document);
 }
 
 }  // namespace loam

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,27 @@ struct AddedImagery {
     ImageryShape shape;
     uint64_t size_bytes = 0;  // of the file in the project
     std::vector<std::string> notes;
+};
+
+// In three steps, as LayerImport.
+class ImageryImport {
+  public:
+    static Result<std::unique_ptr<ImageryImport>> plan(const Document& document,
+                                                       const AddImageryRequest& request);
+    ~ImageryImport();
+
+    Status make(const Progress& progress);  // on any thread
+    // Into project.toml; what its strength and distance are by now stays where the request names none.
+    Result<AddedImagery> adopt(Document& document);
+
+  private:
+    ImageryImport() = default;
+
+    AddImageryRequest request_;
+    std::filesystem::path file_;
+    ProjectSettings settings_;  // when it was planned
+    AddedImagery added_;
+    bool adopted_ = false;
 };
 
 // Writes imagery/NAME.imagery row by row and names it in project.toml, whole or not at all. The file of

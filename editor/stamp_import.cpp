@@ -105,18 +105,20 @@ StampImage stamp_of(const SampleImage& image, double black, double white, AddedS
 }  // namespace
 
 Result<AddedStamp> add_stamp(const std::filesystem::path& project, const std::filesystem::path& file,
-                             const std::string& name) {
+                             const std::string& name, const Progress& progress) {
     if (const auto settings = load_project(project); !settings.ok()) return settings.error();
     AddedStamp added{.name = name.empty() ? file.stem().string() : name};
     LOAM_TRY(check_stamp_name(added.name));
     const std::filesystem::path target = StampLibrary(project).file_of(added.name);
     if (std::filesystem::exists(target))
         return error("the project has a stamp \"{}\" already; give another name with --name", added.name);
+    LOAM_TRY(step_progress(progress, 0, "reading the picture"));
     auto image = read_samples(file, kMaxSide, KeptChannels::up_to_four);
     if (!image.ok()) return image.error();
     if (const size_t mended = mend(*image); mended > 0)
         added.notes.push_back(
             fmt::format("{} numbers were not finite: set to the least of the others", mended));
+    LOAM_TRY(step_progress(progress, 0.6, "making the stamp"));
     const glm::ivec2 size(image->width, image->height);
     while (image->width > kMaxStampTexels || image->height > kMaxStampTexels) halve(*image);
     if (glm::ivec2(image->width, image->height) != size)
@@ -127,6 +129,7 @@ Result<AddedStamp> add_stamp(const std::filesystem::path& project, const std::fi
     if (std::all_of(stamp.heights.begin(), stamp.heights.end(),
                     [&](uint16_t h) { return h == stamp.heights[0]; }))
         added.notes.push_back("its brightness is the same everywhere: it has no relief");
+    LOAM_TRY(step_progress(progress, 0.8, "writing the stamp"));
     added.width = stamp.width;
     added.height = stamp.height;
     std::error_code failure;

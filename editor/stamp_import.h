@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "editor/recipe/progress.h"
 #include "runtime/base/result.h"
 
 namespace loam {
@@ -23,6 +24,7 @@ struct AddedStamp {
 // least to the greatest. Larger than 4096 texels a side: halved until it fits.
 [[nodiscard]] Result<AddedStamp> add_stamp(const std::filesystem::path& project,
                                            const std::filesystem::path& file,
-                                           const std::string& name);  // empty: the file's
+                                           const std::string& name,  // empty: the file's
+                                           const Progress& progress = {});
 
 }  // namespace loam

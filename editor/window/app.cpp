@@ -235,29 +235,85 @@ void App::change_quality(Quality quality, PageFormat format) {
     quality_changed_ = scene_changed_ = true;
 }
 
-void App::layer_added(const AddedLayer& layer) {
-    read_layer_names();
-    set_layer(layer.index);
-    set_tool(Tool::paint);
-    say(fmt::format("Layer {} added, {} texels", layer.entry.name, layer.report.at("size_texels").get<int>()));
-    for (const PackJson& warning : layer.report.at("warnings")) errors_.push_back(warning.get<std::string>());
-    scene_changed();
+void App::start_import(ImportJob::Steps steps) {
+    if (import_)
+        return fail(fmt::format("wait for the import that is running, or cancel it: {}", import_->title()));
+    say(steps.title);
+    import_ = std::make_unique<ImportJob>(std::move(steps));
 }
 
-void App::imagery_added(const AddedImagery& imagery) {
-    say(fmt::format("Imagery added, texels of {} m; it shows from {:.0f} m on", imagery.shape.spacing_m,
-                    imagery.settings.distance_m));
-    for (const std::string& note : imagery.notes) errors_.push_back(note);
-    scene_changed();
+void App::import_layer(const AddLayerRequest& request) {
+    auto planned = LayerImport::plan(session.document(), request);
+    if (!planned) return fail(planned.message());
+    const std::shared_ptr<LayerImport> import(std::move(*planned));
+    const auto adopt = [this, import]() -> Status {
+        const auto added = import->adopt(session.document());
+        if (!added) return added.error();
+        settings_changed_ = true;
+        read_layer_names();
+        set_layer(added->index);
+        if (!tools.stroking()) set_tool(Tool::paint);
+        say(fmt::format("Layer {} added, {} texels", added->entry.name,
+                        added->report.at("size_texels").get<int>()));
+        for (const PackJson& warning : added->report.at("warnings"))
+            errors_.push_back(warning.get<std::string>());
+        return {};
+    };
+    start_import({fmt::format("Adding layer {}", import->name()),
+                  [import](const Progress& progress) { return import->make(progress); }, adopt});
 }
 
-void App::add_stamp(const std::filesystem::path& file, const std::string& name) {
-    const auto added = loam::add_stamp(session.document().folder(), file, name);
-    if (!added) return fail(added.message());
-    tools.settings.stamp.image = added->name;
-    set_tool(Tool::stamp);
-    say(fmt::format("Stamp {} added, {} x {} texels", added->name, added->width, added->height));
-    for (const std::string& note : added->notes) errors_.push_back(note);
+void App::import_imagery(const std::filesystem::path& file) {
+    auto planned = ImageryImport::plan(session.document(), {.file = file, .strength = {}, .distance_m = {}});
+    if (!planned) return fail(planned.message());
+    const std::shared_ptr<ImageryImport> import(std::move(*planned));
+    const auto adopt = [this, import]() -> Status {
+        const auto added = import->adopt(session.document());
+        if (!added) return added.error();
+        settings_changed_ = true;
+        say(fmt::format("Imagery added, texels of {} m; it shows from {:.0f} m on", added->shape.spacing_m,
+                        added->settings.distance_m));
+        for (const std::string& note : added->notes) errors_.push_back(note);
+        return {};
+    };
+    start_import(
+        {"Adding imagery", [import](const Progress& progress) { return import->make(progress); }, adopt});
+}
+
+void App::import_stamp(const std::filesystem::path& file, const std::string& name) {
+    const auto added = std::make_shared<AddedStamp>();
+    const auto make = [added, folder = session.document().folder(), file,
+                       name](const Progress& progress) -> Status {
+        auto made = loam::add_stamp(folder, file, name, progress);
+        if (!made) return made.error();
+        *added = std::move(*made);
+        return {};
+    };
+    const auto adopt = [this, added]() -> Status {
+        tools.settings.stamp.image = added->name;
+        if (!tools.stroking()) set_tool(Tool::stamp);
+        stamp_names = session.document().stamps();
+        say(fmt::format("Stamp {} added, {} x {} texels", added->name, added->width, added->height));
+        for (const std::string& note : added->notes) errors_.push_back(note);
+        return {};
+    };
+    start_import({fmt::format("Adding stamp {}", name.empty() ? file.stem().string() : name), make, adopt});
+}
+
+void App::cancel_import() {
+    if (import_) import_->cancel();
+}
+
+void App::advance_import() {
+    if (!import_ || !import_->done()) return;
+    const std::unique_ptr<ImportJob> job = std::move(import_);
+    const Status finished = job->finish();
+    if (finished)
+        scene_changed();
+    else if (finished.message() == kCancelled)
+        say("The import was cancelled, nothing was added");
+    else
+        fail(finished.message());
 }
 
 void App::resize_brush(double factor) {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,6 +15,7 @@
 #include "editor/fill.h"
 #include "editor/session.h"
 #include "editor/window/camera_controller.h"
+#include "editor/window/import_job.h"
 #include "editor/window/tools.h"
 #include "ui/shortcuts.h"
 #include "ui/widgets.h"
@@ -49,11 +51,10 @@ struct HistoryStep { // commands of one group
 
 // Asked for by actions, done by the window's loop between two frames.
 struct Wish {
-    enum class Kind { none, open_project, export_picture, add_layer, add_imagery };
+    enum class Kind { none, open_project, export_picture };
     Kind kind = Kind::none;
     std::filesystem::path path;
     int width = 0, height = 0;
-    AddLayerRequest layer{};
 };
 
 class App {
@@ -98,11 +99,14 @@ class App {
     int transition_from = 0, transition_to = 1; // of the next one to be made; among the layers with textures
     void set_tool(Tool tool);
     void set_layer(int index);
-    // After the session has added it: into the palette and in use, its warnings said.
-    void layer_added(const AddedLayer& layer);
-    void imagery_added(const AddedImagery& imagery);
-    // Makes a stamp of a picture and takes it up; an error is shown.
-    void add_stamp(const std::filesystem::path& file, const std::string& name);
+    // Imports, one at a time, while everything else goes on; what comes of them is said.
+    void import_layer(const AddLayerRequest& request);  // then it is the paint tool's
+    void import_imagery(const std::filesystem::path& file);
+    void import_stamp(const std::filesystem::path& file,
+                      const std::string& name);                              // then it is the stamp tool's
+    [[nodiscard]] const ImportJob* import() const { return import_.get(); }  // null: none is running
+    void cancel_import();
+    void advance_import();                 // once a frame
     std::vector<std::string> stamp_names;  // of the project
     [[nodiscard]] int layer() const; // of the paint tool, -1: none
     void change_quality(Quality quality, PageFormat format); // of the virtual texture
@@ -148,6 +152,9 @@ class App {
     CameraInput camera_input(ui::Ui& ui, const ui::ViewportResponse& response, double dt_s);
     void choose_drag(ui::Ui& ui, const ui::ViewportResponse& response);
 
+    void start_import(ImportJob::Steps steps);
+
+    std::unique_ptr<ImportJob> import_;
     std::optional<Fill> fill_;
     std::string message_;
     std::vector<std::string> errors_;

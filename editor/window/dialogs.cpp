@@ -82,8 +82,8 @@ void add_layer_dialog(App& app, ui::Ui& ui) {
                                                   .tooltip = "Metres of ground that the maps cover"});
     ui.space(8);
     if (ui::dialog_buttons(ui, {"Cancel", "Add"}) != 1) return;
-    app.wish = {.kind = Wish::Kind::add_layer, .path = app.path_text,
-                .layer = {.pack = {.folder = app.path_text}, .name = app.new_layer_name, .tile_m = app.new_layer_tile_m}};
+    app.import_layer(
+        {.pack = {.folder = app.path_text}, .name = app.new_layer_name, .tile_m = app.new_layer_tile_m});
 }
 
 void add_stamp_dialog(App& app, ui::Ui& ui) {
@@ -94,7 +94,7 @@ void add_stamp_dialog(App& app, ui::Ui& ui) {
     ui::text_field(ui, "File", app.path_text);
     ui::text_field(ui, "Name", app.new_stamp_name, {.placeholder = "as the file"});
     ui.space(8);
-    if (ui::dialog_buttons(ui, {"Cancel", "Add"}) == 1) app.add_stamp(app.path_text, app.new_stamp_name);
+    if (ui::dialog_buttons(ui, {"Cancel", "Add"}) == 1) app.import_stamp(app.path_text, app.new_stamp_name);
 }
 
 void add_imagery_dialog(App& app, ui::Ui& ui) {
@@ -107,8 +107,7 @@ void add_imagery_dialog(App& app, ui::Ui& ui) {
         ui::Tone::dim);
     ui::text_field(ui, "File", app.path_text);
     ui.space(8);
-    if (ui::dialog_buttons(ui, {"Cancel", "Add"}) == 1)
-        app.wish = {.kind = Wish::Kind::add_imagery, .path = app.path_text};
+    if (ui::dialog_buttons(ui, {"Cancel", "Add"}) == 1) app.import_imagery(app.path_text);
 }
 
 // While a fill goes on nothing else is edited: it is one step of the history. Closing the dialog takes it

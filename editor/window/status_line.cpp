@@ -30,6 +30,16 @@ void build_status_line(App& app, ui::Ui& ui) {
     field_at_end(ui, row, 62, fmt::format("{:.0f} %", frame.render_scale * 100), theme.text_dim);
     field_at_end(ui, row, 72, fmt::format("{:.1f} ms", frame.frame_ms), theme.text_dim);
 
+    if (const ImportJob* import = app.import()) {
+        const ImportJob::Stand stand = import->stand();
+        auto area = ui.column_in(ui::cut(row, ui::Edge::right, ui.px(500)).inset(0, ui.px(2)), 0);
+        auto columns = ui.row({ui::flex(), ui::fixed(120), ui::fixed(70)}, 22);
+        ui::label(ui,
+                  stand.what.empty() ? import->title() : fmt::format("{}: {}", import->title(), stand.what));
+        ui::progress(ui, stand.share);
+        if (ui::button(ui, "Cancel")) app.cancel_import();
+    }
+
     if (const auto& at = app.cursor_ground()) {
         const bool inside = app.session.document().bounds().contains(at->x, at->y);
         field(ui, row, 92, fmt::format("E {:.2f}", at->x), theme.text);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kShortestFrame_s = 1.0 / 60;  // FIFO does not throttle on every display server
 constexpr double kShaderPoll_s = 0.5;
+constexpr double kImportPoll_s = 0.1;
 constexpr int kAnnouncedAnswer = 6;            // frames until the feedback of an announced place has come
 constexpr double kLongestStep_s = 0.1;         // of the clock that moves cameras and strokes, after a stall
 
@@ -50,8 +51,6 @@ Result<std::filesystem::path> WindowLoop::run() {
         LOAM_TRY(iterate());
         if (app_.wish.kind == Wish::Kind::open_project) return app_.wish.path;
         if (app_.wish.kind == Wish::Kind::export_picture) LOAM_TRY(export_picture());
-        if (app_.wish.kind == Wish::Kind::add_layer) LOAM_TRY(add_layer());
-        if (app_.wish.kind == Wish::Kind::add_imagery) LOAM_TRY(add_imagery());
         if (options_.max_frames > 0 && redraws() >= uint64_t(options_.max_frames)) break;
     }
     return std::filesystem::path();
@@ -108,15 +107,13 @@ Status WindowLoop::iterate() {
     const ui::FrameOutput& out = build(now, was_busy ? dt : 0, events);
     app_.handle_keys(out.keys, ui_);
     app_.advance_fill();
+    app_.advance_import();
     platform_.set_cursor(out.cursor);
     report_.viewport(viewport_, size.x, size.y);
     report_.message(app_.message());
-    wake_s_ = out.wake_s;
+    wake_s_ = app_.import() ? std::min(out.wake_s, now + kImportPoll_s) : out.wake_s;
 
-    if (app_.take_settings_changed()) {
-        LOAM_TRY(renderer_.settings_changed(*session_.ring()));
-        LOAM_TRY(show_layer_pictures());
-    }
+    if (app_.take_settings_changed()) LOAM_TRY(show_settings());
     if (app_.take_quality_changed()) change_quality();
     if (app_.take_scene_changed()) pacer_.changed(now);
     pacer_.advance(now);
@@ -222,6 +219,14 @@ Status WindowLoop::show_layer_pictures() {
     return {};
 }
 
+Status WindowLoop::show_settings() {
+    if (const Status taken = renderer_.settings_changed(*session_.ring()); !taken) {
+        if (session_.device()->lost()) return taken;
+        app_.fail(taken.message());
+    }
+    return show_layer_pictures();
+}
+
 Status WindowLoop::export_picture() {
     const Wish wish = std::exchange(app_.wish, {});
     const auto picture = session_.render(
@@ -236,33 +241,6 @@ Status WindowLoop::export_picture() {
     }
     app_.scene_changed(); // the renderer's picture is another one now
     build_again_ = true;
-    return {};
-}
-
-Status WindowLoop::add_layer() {
-    const Wish wish = std::exchange(app_.wish, {});
-    const auto added = session_.add_layer(wish.layer, {});
-    build_again_ = true;
-    if (!added) {
-        if (session_.device()->lost()) return added.error();
-        app_.fail(added.message());
-        return {};
-    }
-    LOAM_TRY(show_layer_pictures());
-    app_.layer_added(*added);
-    return {};
-}
-
-Status WindowLoop::add_imagery() {
-    const Wish wish = std::exchange(app_.wish, {});
-    const auto added = session_.add_imagery({.file = wish.path, .strength = {}, .distance_m = {}}, {});
-    build_again_ = true;
-    if (!added) {
-        if (session_.device()->lost()) return added.error();
-        app_.fail(added.message());
-        return {};
-    }
-    app_.imagery_added(*added);
     return {};
 }
 

@@ -39,10 +39,9 @@ class WindowLoop {
     FrameSettings frame_settings() const;
     void change_quality();
     void announce();
+    Status show_settings();
     Status show_layer_pictures();  // of layers, that changed since the last call
     Status export_picture();
-    Status add_layer();
-    Status add_imagery();
     Status poll_shaders(double now_s);
     void note_frame_time(double now_s);
 

@@ -121,6 +121,16 @@ class Window:
                 return
         raise AssertionError(f"the window does not come to rest; last: {self.events[-3:]}")
 
+    def wait_message(self, part, timeout=90):
+        """What the status line says once it holds that."""
+        end = time.monotonic() + timeout
+        while time.monotonic() < end:
+            said = self.last("message")
+            if said and part in said["text"]:
+                return said["text"]
+            self._take(0.1)
+        raise AssertionError(f"no message with {part!r}; last: {self.last('message')}")
+
     def last(self, name):
         return next((e for e in reversed(self.events) if e["event"] == name), None)
 

@@ -298,6 +298,7 @@ def test_a_layer_added_while_the_window_is_open_is_painted_with(display, project
         display.key("Tab", "ctrl+a")
         display.xdotool("type", "--delay", 20, "sky")
         display.key("Tab", "Tab", "Tab", "Return")
+        window.wait_message("sky added" if path == folder else "nowhere")
         window.settle()
         added = '[[layer]]\nname = "sky"' in (project / "project.toml").read_text()
         assert added == (path == folder), window.last("message")
@@ -311,6 +312,58 @@ def test_a_layer_added_while_the_window_is_open_is_painted_with(display, project
     assert blue > red + 40 and changed_share(start, painted, (x, y)) > 0.5
     assert [c["layer"] for c in window.commands() if c["cmd"] == "paint"][-1] == "sky"
     closed_cleanly(window, display)
+
+
+def test_the_map_is_edited_while_a_layer_is_added(display, project, opened, tmp_path):
+    folder = tmp_path / "noise"
+    folder.mkdir()
+    for suffix in ("Color", "NormalGL", "Roughness", "Displacement"):
+        grey = Image.effect_noise((2048, 2048), 40)
+        picture = Image.merge("RGB", (grey, grey, Image.new("L", grey.size, 250)))
+        picture.save(folder / f"noise_{suffix}.png")
+    window = opened()
+    away(display, window)
+    start = display.screenshot()
+    text = project / "project.toml"
+    files = sorted((project / "layers").iterdir())
+
+    def add():
+        display.key("ctrl+l")
+        display.xdotool("type", "--delay", 20, str(folder))
+        display.key("Tab", "Tab", "Tab", "Tab", "Return")
+        window.wait_message("Adding layer noise")
+
+    add()
+    spot = place(window, 0.5, 0.7)
+    display.key("1")
+    display.drag(*spot, spot[0] + 40, spot[1])
+    command = window.wait_for("command")["command"]
+    keep("importing.png", display.screenshot())
+    assert command["cmd"] == "sculpt" and 'name = "noise"' not in text.read_text(), "the import has not ended yet"
+    assert changed_share(start, display.screenshot(), spot, half=30) > 0.2, "the edit shows while it runs"
+    # A second one has to wait; the first is taken back with its button.
+    display.key("ctrl+l")
+    display.xdotool("type", "--delay", 20, str(folder))
+    display.key("Tab", "Tab", "Tab", "Tab", "Return")
+    window.wait_message("Wait for the import")
+    display.click(889, 787)
+    window.wait_message("cancelled")
+    assert 'name = "noise"' not in text.read_text() and sorted((project / "layers").iterdir()) == files
+    add()
+    window.wait_message("noise added")
+    window.settle()
+    assert 'name = "noise"' in text.read_text()
+    keep("imported.png", display.screenshot())
+    # One that is running when the window is closed leaves nothing behind.
+    files = sorted((project / "layers").iterdir())
+    display.key("ctrl+l")
+    display.xdotool("type", "--delay", 20, str(folder))
+    display.key("Tab")
+    display.xdotool("type", "--delay", 20, "late")
+    display.key("Tab", "Tab", "Tab", "Return")
+    window.wait_message("Adding layer late")
+    closed_cleanly(window, display)
+    assert 'name = "late"' not in text.read_text() and sorted((project / "layers").iterdir()) == files
 
 
 def test_the_map_is_filled_and_taken_back(display, project, opened):
@@ -379,6 +432,7 @@ def test_imagery_is_laid_over_the_map(display, project, opened, tmp_path):
         display.key("ctrl+i")
         display.xdotool("type", "--delay", 20, str(path))
         display.key("Tab", "Tab", "Return")
+        window.wait_message("Imagery added" if path.stem == "pink" else "nowhere.png")
         window.settle()
         assert (project / "imagery" / "pink.imagery").exists() == (path.stem == "pink"), window.last("message")
     away(display, window)
@@ -408,6 +462,7 @@ def test_a_picture_becomes_a_stamp_and_is_laid(display, project, opened, tmp_pat
         display.key("ctrl+t")
         display.xdotool("type", "--delay", 20, str(path))
         display.key("Tab", "Tab", "Tab", "Return")
+        window.wait_message("bumps added" if path.stem == "bumps" else "nowhere.png")
         window.settle()
         assert (project / "stamps" / "bumps.stamp").exists() == (path.stem == "bumps"), window.last("message")
     display.click(*spot)
