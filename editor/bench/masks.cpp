@@ -13,6 +13,7 @@ namespace {
 constexpr double kMap_m = 512, kMosaic_m = 4;
 constexpr PageId kPage{{true, 1, 1}, 3, 3, 4};  // 8 m
 constexpr double kWhole_m = 16'384;
+constexpr double kIndexMapBytes = 2.5;  // a texel: 16-bit index and BC1 tint
 
 // Each layer's share of a square of vertices around each: 0 is the index map itself, more is a soft brush's
 // overlap.
@@ -88,34 +89,6 @@ Result<LayerMasks> upload(Stage& stage, const MapPage& page, const std::vector<s
     return out;
 }
 
-struct Composed {
-    double ms = 0;
-    std::vector<uint8_t> albedo;  // RGBA8, the page's
-};
-
-Result<Composed> compose(Stage& stage, PageMaker& maker, const ComposeJob& job, int repeats) {
-    auto ms = stage.page_ms(maker, job, repeats);
-    if (!ms) return ms.error();
-    Composed out{*ms, {}};
-    auto read = stage.timed_frame([&](gpu::Commands& commands) -> Status {
-        stage.ring->read_back(commands, maker.atlas[0], [&](std::span<const std::byte> bytes) {
-            const auto* from = reinterpret_cast<const uint8_t*>(bytes.data());
-            out.albedo.assign(from, from + bytes.size());
-        });
-        return {};
-    });
-    if (!read) return read.error();
-    return out;
-}
-
-// Albedo as pages keep it, of 255.
-double rms(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
-    double sum = 0;
-    for (size_t i = 0; i < a.size(); ++i)
-        if (i % 4 != 3) sum += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
-    return std::sqrt(sum / (double(a.size()) * 0.75));
-}
-
 }  // namespace
 
 Status add_masks(const BenchRequest& request, gpu::Device& device, BenchTable& table) {
@@ -135,7 +108,7 @@ Status add_masks(const BenchRequest& request, gpu::Device& device, BenchTable& t
         auto job = stage->whole_page(kPage);
         if (!job) return job.error();
         const int repeats = request.quick ? 3 : 15;
-        auto index = compose(*stage, *maker, *job, repeats);
+        auto index = stage->composed(*maker, *job, repeats);
         if (!index) return index.error();
         const IndexTexel* texels = stage->index->resident_page(job->index_page);
         const double page_bytes = double(kIndexTexels) * kIndexTexels, slots = IndexMapDesc{}.slot_count;
@@ -145,19 +118,20 @@ Status add_masks(const BenchRequest& request, gpu::Device& device, BenchTable& t
             auto pages = upload(*stage, job->index_page, masks);
             if (!pages) return pages.error();
             LOAM_TRY(maker->composer->use_masks(&*pages));
-            auto masked = compose(*stage, *maker, *job, repeats);
+            auto masked = stage->composed(*maker, *job, repeats);
             LOAM_TRY(maker->composer->use_masks(nullptr));
             if (!masked) return masked.error();
-            table.rows.push_back({{"layers", layers},
-                                  {"kind", radius == 0 ? "hard" : fmt::format("soft, {} m", radius)},
-                                  {"layers a texel", rounded(lookups(masks, *stage, *job), 2)},
-                                  {"index map ms", rounded(index->ms, 2)},
-                                  {"masks ms", rounded(masked->ms, 2)},
-                                  {"rms between, of 255", rounded(rms(index->albedo, masked->albedo), 2)},
-                                  {"cache MB, index map", rounded(page_bytes * slots * 6 / 1e6, 1)},
-                                  {"cache MB, masks", rounded(page_bytes * slots * layers / 1e6, 1)},
-                                  {"16 km MB, index map", rounded(whole * 6 / 1e6, 0)},
-                                  {"16 km MB, masks", rounded(whole * layers / 1e6, 0)}});
+            table.rows.push_back(
+                {{"layers", layers},
+                 {"kind", radius == 0 ? "hard" : fmt::format("soft, {} m", radius)},
+                 {"layers a texel", rounded(lookups(masks, *stage, *job), 2)},
+                 {"index map ms", rounded(index->ms, 2)},
+                 {"masks ms", rounded(masked->ms, 2)},
+                 {"rms between, of 255", rounded(albedo_rms(index->albedo, masked->albedo), 2)},
+                 {"cache MB, index map", rounded(page_bytes * slots * kIndexMapBytes / 1e6, 1)},
+                 {"cache MB, masks", rounded(page_bytes * slots * layers / 1e6, 1)},
+                 {"16 km MB, index map", rounded(whole * kIndexMapBytes / 1e6, 0)},
+                 {"16 km MB, masks", rounded(whole * layers / 1e6, 0)}});
         }
     }
     return {};

@@ -323,7 +323,7 @@ Status add_transition_error(const BenchRequest& request, BenchTable& table) {
 Result<BenchReport> bench_materials(const BenchRequest& request) {
     auto device = gpu::Device::create(request.session.device);
     if (!device) return device.error();
-    BenchReport report(6);
+    BenchReport report(7);
     report[0].title = "A whole page of 8 m, RGBA8, and the picture against the reference (a mosaic of 4 m)";
     LOAM_TRY(add_costs(request, **device, report[0]));
     report[1].title = "Tile hiding: largest autocorrelation at half to one and a half tiles";
@@ -336,6 +336,8 @@ Result<BenchReport> bench_materials(const BenchRequest& request) {
     report[5].title = fmt::format("Parallax at {}x{}, everywhere in the picture, against 256 steps",
                                   request.width, request.height);
     LOAM_TRY(add_parallax(request, report[5]));
+    report[6].title = "The index map's tints as BC1 against exact ones: the project's own ground";
+    LOAM_TRY(add_tints(request, **device, report[6]));
     return report;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 
 #include "editor/bench/bench.h"
@@ -25,7 +26,7 @@ struct Stage {
     std::unique_ptr<IndexMap> index;
     uint64_t frame = 0;
 
-    static Result<Stage> create(gpu::Device& device, Document& document) {
+    static Result<Stage> create(gpu::Device& device, Document& document, const IndexMapDesc& maps = {}) {
         Stage stage{device, document, {}, {}, {}};
         auto ring = gpu::FrameRing::create(device, 2);
         if (!ring) return ring.error();
@@ -33,7 +34,7 @@ struct Stage {
         auto layers = LayerSet::create(*stage.ring, document, UINT64_MAX);
         if (!layers) return layers.error();
         stage.layers = std::move(*layers);
-        auto index = IndexMap::create(&device, document, {});
+        auto index = IndexMap::create(&device, document, maps);
         if (!index) return index.error();
         stage.index = std::move(*index);
         return stage;
@@ -85,6 +86,25 @@ struct Stage {
         }
         return (best - idle) / double(jobs.size());
     }
+    struct Composed {
+        double ms = 0;
+        std::vector<uint8_t> albedo;  // RGBA8, the page's
+    };
+    // By a maker of one page whose textures are not compressed.
+    Result<Composed> composed(PageMaker& maker, const ComposeJob& job, int repeats) {
+        auto ms = page_ms(maker, job, repeats);
+        if (!ms) return ms.error();
+        Composed out{*ms, {}};
+        auto read = timed_frame([&](gpu::Commands& commands) -> Status {
+            ring->read_back(commands, maker.atlas[0], [&](std::span<const std::byte> bytes) {
+                const auto* from = reinterpret_cast<const uint8_t*>(bytes.data());
+                out.albedo.assign(from, from + bytes.size());
+            });
+            return {};
+        });
+        if (!read) return read.error();
+        return out;
+    }
     Status make_resident(const MapPage& page) {
         for (int i = 0; i < 50; ++i) {
             auto ms = timed_frame([&](gpu::Commands& commands) {
@@ -98,7 +118,16 @@ struct Stage {
     }
 };
 
+// Of albedo as pages keep it, of 255.
+[[nodiscard]] inline double albedo_rms(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+    double sum = 0;
+    for (size_t i = 0; i < a.size(); ++i)
+        if (i % 4 != 3) sum += (double(a[i]) - b[i]) * (double(a[i]) - b[i]);
+    return std::sqrt(sum / (double(a.size()) * 0.75));
+}
+
 // Tables of `bench materials`.
+Status add_tints(const BenchRequest& request, gpu::Device& device, BenchTable& table);
 Status add_parallax(const BenchRequest& request, BenchTable& table);
 Status add_masks(const BenchRequest& request, gpu::Device& device, BenchTable& table);
 Status add_vista_steps(const BenchRequest& request, gpu::Device& device, BenchTable& table);

@@ -42,8 +42,8 @@ struct ProfileDefaults {
 
 ProfileDefaults profile_defaults(gpu::Profile profile) {
     if (profile == gpu::Profile::software)
-        return {PageFormat::rgba8, 2, 12, 4, 2.4, 1024, 1, Filter::bilinear, Filter::anisotropic_tiles};
-    return {PageFormat::bc1x3,           12, 48, 16, 4.0, 2048, 4, Filter::anisotropic_hardware,
+        return {PageFormat::rgba8, 2, 12, 2, 2.4, 1024, 1, Filter::bilinear, Filter::anisotropic_tiles};
+    return {PageFormat::bc1x3,           12, 48, 4, 4.0, 2048, 4, Filter::anisotropic_hardware,
             Filter::anisotropic_hardware};
 }
 

@@ -41,7 +41,7 @@ struct RendererDesc {
     // The talk's 144 height pages serve its patches; here a page's normals are seen pixel by pixel, which
     // wants smaller pages: a 16 km range along a slope takes 618 (with 320 the ground at the eye's feet was
     // metres off).
-    int height_slots = 640, index_slots = 144;
+    int height_slots = 640, index_slots = 48;
     int layer_budget_mb = int(LayerSet::kBudgetBytes >> 20);
     // What is 0 here: by quality (sizes), by profile (pages a frame). The format is page_format's.
     VirtualTextureDesc texture{.pages_per_side = 0, .indirection_size = 0, .budget_pages = 0};

@@ -87,8 +87,8 @@ Status HeightMap::update(gpu::FrameRing& ring, gpu::Commands& commands, uint64_t
         heights.push_back({w.rect, uint32_t(w.slot), page.heights_m.data()});
         normals.push_back({w.rect, uint32_t(w.slot), page.normals.data()});
     }
-    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->heights, 4, heights));
-    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->normals, 8, normals));
+    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->heights, {.bytes = 4}, heights));
+    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->normals, {.bytes = 8}, normals));
     commands.use(
         {{impl_->heights, gpu::Access::graphics_read}, {impl_->normals, gpu::Access::graphics_read}});
     for (const VirtualMap::Work& w : work) impl_->map.finish(w);

@@ -7,7 +7,8 @@ namespace loam {
 
 void IndexMap::compose(const Document& document, const VirtualMap& map, const MapPage& page,
                        const TexelRect& rect, std::span<IndexTexel> out) {
-    LOAM_CHECK(out.size() == size_t(kIndexTexels) * kIndexTexels, "an index page has 136 x 136 texels");
+    LOAM_CHECK(out.size() == size_t(kIndexTexels) * kIndexTexels,
+               "an index page is composed whole or in part, into a whole one");
     LOAM_CHECK(rect == intersected(rect, {0, 0, kIndexTexels, kIndexTexels}), "rectangle beyond the page");
     if (rect.empty()) return;
     const glm::ivec2 first(page.x * kIndexPayload - kIndexBorder + rect.x0,

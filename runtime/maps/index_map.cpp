@@ -8,6 +8,7 @@
 #include "runtime/document/document.h"
 #include "runtime/maps/base_window.h"
 #include "runtime/maps/rect_upload.h"
+#include "runtime/maps/tint_blocks.h"
 #include "shaders/texture/imagery.h"
 
 namespace loam {
@@ -15,12 +16,16 @@ namespace loam {
 namespace {
 
 constexpr size_t kPageTexels = size_t(kIndexTexels) * kIndexTexels;
-constexpr int64_t kParallelTexels = 30'000;  // an index page takes about 0.1 ms
+constexpr size_t kPageBlocks = kPageTexels / (kTintBlockTexels * kTintBlockTexels);
+constexpr int64_t kParallelTexels = 30'000;  // about 0.1 ms
+constexpr int kParallelBlocks = 200;         // 0.3 ms where tints differ; nothing where they do not
+static_assert(kIndexBorder % kTintBlockTexels == 0 && kIndexPayload % kTintBlockTexels == 0);
 
 struct IndexPage {
     std::vector<IndexTexel> texels;
-    // The same as the GPU has them; the tint's fourth byte is 255.
+    // The same as the GPU has them; one of the last two. The fourth byte of a tint is 255.
     std::vector<uint16_t> layers;
+    std::vector<glm::uvec2> tint_blocks;
     std::vector<uint32_t> tints;
     std::vector<uint32_t> imagery;  // of this update only
     uint64_t imagery_generation = 0;
@@ -34,23 +39,34 @@ VirtualMapDesc map_desc(const Document& document, int slot_count) {
     desc.spacing_m = document.settings().index_spacing_m;
     desc.bounds = document.bounds();
     const double extent_m = std::max({desc.bounds.max_x, desc.bounds.max_y, desc.spacing_m});
-    desc.level_count = level_count_for(extent_m, desc.spacing_m, kIndexPayload);
+    desc.level_count = level_count_for(extent_m, desc.spacing_m, kIndexSquareTexels);
     return desc;
 }
 
 void compose_page(const Document& document, const VirtualMap& map, const VirtualMap::Work& work,
-                  IndexPage& page) {
+                  bool compressed_tints, IndexPage& page) {
     page.texels.resize(kPageTexels);
     page.layers.resize(kPageTexels);
-    page.tints.resize(kPageTexels);
+    if (!compressed_tints) page.tints.resize(kPageTexels);
     IndexMap::compose(document, map, work.page, work.rect, page.texels);
     for (int y = work.rect.y0; y < work.rect.y1; ++y)
         for (int x = work.rect.x0; x < work.rect.x1; ++x) {
             const size_t i = size_t(y) * kIndexTexels + size_t(x);
             const IndexTexel& t = page.texels[i];
             page.layers[i] = t.layer;
-            page.tints[i] = 0xff000000u | uint32_t(t.tint[2]) << 16 | uint32_t(t.tint[1]) << 8 | t.tint[0];
+            if (!compressed_tints)
+                page.tints[i] =
+                    0xff000000u | uint32_t(t.tint[2]) << 16 | uint32_t(t.tint[1]) << 8 | t.tint[0];
         }
+}
+
+void pack_tints(IndexPage& page, const TexelRect& blocks) {
+    page.tint_blocks.resize(kPageBlocks);
+    parallel_ranges(
+        blocks.height(), std::max(1, kParallelBlocks / std::max(blocks.width(), 1)), [&](int begin, int end) {
+            encode_tint_blocks(page.texels, kIndexTexels,
+                               {blocks.x0, blocks.y0 + begin, blocks.x1, blocks.y0 + end}, page.tint_blocks);
+        });
 }
 
 // The square of imagery that is the page's.
@@ -78,6 +94,7 @@ struct IndexMap::Impl {
     VirtualMap map;
     std::vector<IndexPage> pages;  // one a slot
     gpu::Image indices, tints, imagery;
+    bool compressed_tints = false;
     std::string imagery_file;  // that pages are composed with; empty: none
     uint64_t imagery_generation = 0;
     gpu::Buffer page_table;
@@ -106,7 +123,8 @@ Result<std::unique_ptr<IndexMap>> IndexMap::create(gpu::Device* device, const Do
     auto indices = gpu::Image::create(*device, image);
     if (!indices) return indices.error();
     image.name = "layer tints";
-    image.format = VK_FORMAT_R8G8B8A8_UNORM;
+    map->impl_->compressed_tints = desc.compressed_tints && device->caps().bc;
+    image.format = map->impl_->compressed_tints ? VK_FORMAT_BC1_RGB_UNORM_BLOCK : VK_FORMAT_R8G8B8A8_UNORM;
     auto tints = gpu::Image::create(*device, image);
     if (!tints) return tints.error();
     gpu::BufferDesc table;
@@ -172,7 +190,7 @@ std::vector<VirtualMap::Work> IndexMap::Impl::compose_planned(uint64_t frame, in
         for (int i = begin; i < end; ++i) {
             const VirtualMap::Work& w = work[size_t(i)];
             IndexPage& page = pages[size_t(w.slot)];
-            compose_page(document, map, w, page);
+            compose_page(document, map, w, compressed_tints, page);
             // An edit changes no imagery.
             if (!imagery || (!w.whole && page.imagery_generation == imagery_generation)) continue;
             page.imagery = imagery_of(document, w.page);
@@ -180,6 +198,8 @@ std::vector<VirtualMap::Work> IndexMap::Impl::compose_planned(uint64_t frame, in
         }
     };
     parallel_ranges(count, texels >= kParallelTexels ? 1 : std::max(count, 1), compose_range);
+    if (compressed_tints)
+        for (const VirtualMap::Work& w : work) pack_tints(pages[size_t(w.slot)], tint_blocks_of(w.rect));
     return work;
 }
 
@@ -216,14 +236,20 @@ Status IndexMap::update(gpu::FrameRing& ring, gpu::Commands& commands, uint64_t 
     for (const VirtualMap::Work& w : work) {
         const IndexPage& page = impl_->pages[size_t(w.slot)];
         indices.push_back({w.rect, uint32_t(w.slot), page.layers.data()});
-        tints.push_back({w.rect, uint32_t(w.slot), page.tints.data()});
+        if (impl_->compressed_tints)
+            tints.push_back({tint_blocks_of(w.rect), uint32_t(w.slot), page.tint_blocks.data()});
+        else
+            tints.push_back({w.rect, uint32_t(w.slot), page.tints.data()});
         if (!page.imagery.empty())
             imagery.push_back(
                 {{0, 0, kImageryPageTexels, kImageryPageTexels}, uint32_t(w.slot), page.imagery.data()});
     }
-    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->indices, 2, indices));
-    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->tints, 4, tints));
-    if (!imagery.empty()) LOAM_TRY(cmd_upload_rects(ring, commands, impl_->imagery, 4, imagery));
+    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->indices, {.bytes = 2}, indices));
+    const UploadUnit tint_unit = impl_->compressed_tints
+                                     ? UploadUnit{.bytes = 8, .side_texels = kTintBlockTexels}
+                                     : UploadUnit{.bytes = 4};
+    LOAM_TRY(cmd_upload_rects(ring, commands, impl_->tints, tint_unit, tints));
+    if (!imagery.empty()) LOAM_TRY(cmd_upload_rects(ring, commands, impl_->imagery, {.bytes = 4}, imagery));
     for (const VirtualMap::Work& w : work) impl_->pages[size_t(w.slot)].imagery = {};
     for (const VirtualMap::Work& w : work) impl_->map.finish(w);
     return impl_->cmd_update_table(ring, commands);
@@ -245,6 +271,10 @@ gpu::Image& IndexMap::tints() {
     return impl_->tints;
 }
 
+bool IndexMap::compressed_tints() const {
+    return impl_->compressed_tints;
+}
+
 gpu::Image& IndexMap::imagery() {
     return impl_->imagery ? impl_->imagery : impl_->tints;
 }
@@ -261,7 +291,8 @@ const IndexTexel* IndexMap::resident_page(const MapPage& page) const {
 MapPage IndexMap::page_for_square(double min_x_m, double min_y_m, double side_m) const {
     const VirtualMap& map = impl_->map;
     MapPage page;
-    while (page.level < map.root().level && map.page_size_m(page.level) < side_m) ++page.level;
+    while (page.level < map.root().level && map.spacing_m(page.level) * kIndexSquareTexels < side_m)
+        ++page.level;
     const double size_m = map.page_size_m(page.level);
     const auto index = [&](double low_m, int count) {
         return std::isnan(low_m) ? 0 : int(std::clamp(std::floor(low_m / size_m), 0.0, double(count - 1)));
@@ -294,11 +325,19 @@ IndexTexel IndexMap::texel_at(double x_m, double y_m) {
 
 uint32_t IndexMap::count_stale_pages(const Document& document) const {
     uint32_t stale = 0;
+    constexpr int kBlocksAcross = kIndexTexels / kTintBlockTexels;
     std::vector<IndexTexel> fresh(kPageTexels);
+    std::vector<glm::uvec2> blocks(kPageBlocks);
     impl_->map.for_each_resident([&](const MapPage& page, int slot, const TexelRect& dirty) {
         if (!dirty.empty()) return;
         compose(document, impl_->map, page, {0, 0, kIndexTexels, kIndexTexels}, fresh);
-        stale += fresh == impl_->pages[size_t(slot)].texels ? 0 : 1;
+        const IndexPage& kept = impl_->pages[size_t(slot)];
+        bool same = fresh == kept.texels;
+        if (impl_->compressed_tints) {
+            encode_tint_blocks(fresh, kIndexTexels, {0, 0, kBlocksAcross, kBlocksAcross}, blocks);
+            same = same && blocks == kept.tint_blocks;
+        }
+        stale += same ? 0 : 1;
     });
     return stale;
 }

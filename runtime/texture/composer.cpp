@@ -15,7 +15,8 @@ namespace {
 
 using gpu::Access;
 
-static_assert(kIndexPageBorder == kIndexBorder && kIndexPageTexels == kIndexTexels);
+static_assert(kIndexPageBorder == kIndexBorder && 1 << kIndexPageLog2 == kIndexPayload &&
+              kIndexPageTexels == kIndexTexels);
 
 constexpr int kBlockTexels = 4;
 

@@ -93,7 +93,7 @@ class VirtualTexture {
     // filter). What coarser levels need beyond that is added here. Pages that are too coarse to show a decal
     // of size_m (Dirt::texture_size_m) stay as they are; what has no size is infinitely large.
     void on_dirt(std::span<const WorldRect> rects, double size_m);
-    // Index dirt as the document tells it: grows it and calls on_dirt.
+    // Index dirt as the document tells it: what it changes of the tints' blocks and what filters over them.
     void on_index_dirt(std::span<const WorldRect> rects);
     // After LayerSet::take_settings: every page is composed again.
     Status take_settings();

@@ -91,6 +91,9 @@ struct VirtualTexture::Impl {
     void want(const PageRequest& request);
     void make_room();
     void gather_dirty();
+    // rect_of(rect, spacing of the index level that the page is composed from): what of the page is dirty.
+    template <typename RectOf>
+    void take_dirt(std::span<const WorldRect> rects, double size_m, RectOf&& rect_of);
     [[nodiscard]] MapPage index_page(const PageId& page) const;
     [[nodiscard]] uint32_t indirection_texel(int place, int log2_width) const;
     [[nodiscard]] std::vector<ComposeJob> choose_jobs(const TextureView& view);

@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "runtime/maps/base_window.h"
+#include "runtime/maps/tint_blocks.h"
 #include "runtime/texture/paint_decals.h"
 #include "runtime/texture/virtual_texture_impl.h"
 #include "shaders/texture/decal_io.h"
@@ -434,20 +435,18 @@ bool VirtualTexture::Impl::shows(const PageId& page, double size_m) const {
     return shared::decal_fade(float(size_m), float(layout.texel_m(page))) > 0;
 }
 
-void VirtualTexture::on_dirt(std::span<const WorldRect> rects, double size_m) {
-    Impl& t = *impl_;
-    const double finest_m = t.index.map().spacing_m(0);
+template <typename RectOf>
+void VirtualTexture::Impl::take_dirt(std::span<const WorldRect> rects, double size_m, RectOf&& rect_of) {
+    Impl& t = *this;
     for (int i = 0; i < t.pool.place_count(); ++i) {
         const PagePool::Place& place = t.pool.place(i);
         if (place.state == PagePool::State::free) continue;
         if (!t.shows(place.page, size_m)) continue;
-        // Coarser index levels filter over wider texels; one texel of that level is about two texels of the
-        // page.
-        const double grow_m = t.index.map().spacing_m(t.index_page(place.page).level) - finest_m;
+        const double index_m = t.index.map().spacing_m(t.index_page(place.page).level);
         TexelRect dirty;
         for (const WorldRect& rect : rects) {
             if (rect.empty()) continue;
-            const TexelRect texels = page_texels(t.layout, place.page, rect.grown(grow_m));
+            const TexelRect texels = page_texels(t.layout, place.page, rect_of(rect, index_m));
             dirty = united(dirty, aligned_out(texels, t.layers.rect_texels(), kPageTexels));
         }
         if (dirty.empty()) continue;
@@ -458,13 +457,20 @@ void VirtualTexture::on_dirt(std::span<const WorldRect> rects, double size_m) {
     t.gather_dirty();
 }
 
+void VirtualTexture::on_dirt(std::span<const WorldRect> rects, double size_m) {
+    // Coarser index levels filter over wider texels; one texel of that level is about two texels of the page.
+    const double finest_m = impl_->index.map().spacing_m(0);
+    impl_->take_dirt(rects, size_m,
+                     [&](const WorldRect& rect, double index_m) { return rect.grown(index_m - finest_m); });
+}
+
 void VirtualTexture::on_index_dirt(std::span<const WorldRect> rects) {
     // The filter's reach, and distortion's.
-    const double reach_m = impl_->index.map().spacing_m(0) + impl_->layers.ground.distortion_amplitude_m;
-    std::vector<WorldRect> grown;
-    for (const WorldRect& rect : rects)
-        if (!rect.empty()) grown.push_back(rect.grown(reach_m));
-    on_dirt(grown, INFINITY);
+    const double distortion_m = impl_->layers.ground.distortion_amplitude_m;
+    const bool blocks = impl_->index.compressed_tints();
+    impl_->take_dirt(rects, INFINITY, [&](const WorldRect& rect, double index_m) {
+        return (blocks ? tint_block_rect(rect, index_m) : rect).grown(index_m + distortion_m);
+    });
 }
 
 // Texels whose ground changed, where a volume lies on it. A page of coarser texels looks at coarser samples,

@@ -77,15 +77,15 @@ MaterialSample direct_material(vec2 rel_m, float log2_footprint, float log2_dist
     uint slot = 0xffffu;
     for (; level < direct.level_count; ++level) {
         ivec4 info = direct.levels[level];
-        ivec2 page = clamp(texel >> (level + 7), ivec2(0), info.yz - 1);
+        ivec2 page = clamp(texel >> (level + kIndexPageLog2), ivec2(0), info.yz - 1);
         slot = direct_table[info.x + page.y * info.y + page.x];
         if (slot != 0xffffu) break;
     }
     level = min(level, direct.level_count - 1);
     ivec2 coarse = texel >> level;
     vec2 fraction = (vec2(texel - (coarse << level)) + rest) * (1.0 / float(1 << level));
-    ivec2 page = clamp(coarse >> 7, ivec2(0), direct.levels[level].yz - 1);
-    ivec2 local = clamp(coarse - (page << 7), ivec2(-kIndexPageBorder), ivec2(130)) + kIndexPageBorder;
+    ivec2 page = clamp(coarse >> kIndexPageLog2, ivec2(0), direct.levels[level].yz - 1);
+    ivec2 local = clamp(coarse - (page << kIndexPageLog2) + kIndexPageBorder, ivec2(0), ivec2(kIndexPageTexels - 2));
     ivec3 base = ivec3(local, int(slot == 0xffffu ? 0u : slot));
     MaterialCorners c;
     c.layers = uvec4(texelFetch(direct_indices, base, 0).r, texelFetch(direct_indices, base + ivec3(1, 0, 0), 0).r,

@@ -5,7 +5,7 @@
 LOAM_BEGIN_SHARED
 
 #define kImageryDensity 2 // imagery texels an index texel; they cover squares, index texels stand at corners
-#define kImageryPageTexels 272
+#define kImageryPageTexels 528
 
 LOAM_END_SHARED
 #endif

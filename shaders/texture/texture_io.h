@@ -46,7 +46,8 @@ LOAM_BEGIN_SHARED
 #define kMaxIndirectionSize 1024  // texels a side of mip 0: what a sector table entry can name
 #define kMaxSectorLog2Width 8     // 256 x 256 pages on 64 m: 1.008 mm a texel
 #define kIndexPageBorder 4    // of index map pages (maps/index_map.h)
-#define kIndexPageTexels 136
+#define kIndexPageLog2 8      // texels of one without its border
+#define kIndexPageTexels 264
 #define kMaxIndexLevels 16
 
 // Everything that a lookup needs; a storage buffer, one a frame.

@@ -7,6 +7,7 @@
 #include "runtime/maps/half.h"
 #include "runtime/maps/height_compose.h"
 #include "runtime/maps/index_map.h"
+#include "runtime/maps/tint_blocks.h"
 #include "tests/gpu/test_device.h"
 #include "tests/unit/map_fixture.h"
 
@@ -279,7 +280,7 @@ TEST_F(Geometry, TheArraysHoldWhatTheCpuHas) {
     ASSERT_EQ(scene.indices->map().slot_of(scene.indices->map().root()), 0);
     std::vector<float> heights;
     std::vector<uint16_t> normals, layers;
-    std::vector<uint8_t> tints;
+    std::vector<glm::uvec2> tint_blocks;
     std::vector<uint32_t> table;
     gpu::Frame* frame = need(scene.ring->begin());
     const auto keep = [](auto& out) {
@@ -290,7 +291,7 @@ TEST_F(Geometry, TheArraysHoldWhatTheCpuHas) {
     scene.ring->read_back(frame->commands, scene.heights->heights(), keep(heights));
     scene.ring->read_back(frame->commands, scene.heights->normals(), keep(normals));
     scene.ring->read_back(frame->commands, scene.indices->indices(), keep(layers));
-    scene.ring->read_back(frame->commands, scene.indices->tints(), keep(tints));
+    scene.ring->read_back(frame->commands, scene.indices->tints(), keep(tint_blocks));
     scene.ring->read_back(frame->commands, scene.indices->page_table(), 0,
                           scene.indices->map().table_entry_count() * sizeof(uint32_t), keep(table));
     need(scene.ring->finish(*frame));
@@ -304,9 +305,11 @@ TEST_F(Geometry, TheArraysHoldWhatTheCpuHas) {
     ASSERT_EQ(layers.size(), size_t(kIndexTexels * kIndexTexels));
     for (size_t i = 0; i < layers.size(); ++i) {
         ASSERT_EQ(layers[i], texels[i].layer);
-        for (size_t c = 0; c < 3; ++c) ASSERT_EQ(tints[i * 4 + c], texels[i].tint[c]);
-        ASSERT_EQ(tints[i * 4 + 3], 255);
     }
+    constexpr int kAcross = kIndexTexels / kTintBlockTexels;
+    std::vector<glm::uvec2> blocks(size_t(kAcross) * kAcross);
+    encode_tint_blocks({texels, layers.size()}, kIndexTexels, {0, 0, kAcross, kAcross}, blocks);
+    EXPECT_EQ(tint_blocks, blocks);
     const VirtualMap& map = scene.indices->map();
     for (int level = 0; level <= map.root().level; ++level)
         for (int y = 0; y < map.pages_y(level); ++y)

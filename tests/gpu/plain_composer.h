@@ -16,6 +16,7 @@
 
 #include "runtime/document/document.h"
 #include "runtime/maps/half.h"
+#include "runtime/maps/tint_blocks.h"
 #include "runtime/texture/distortion.h"
 #include "shaders/document/noise_math.h"
 #include "tests/gpu/texture_world.h"
@@ -32,16 +33,30 @@ inline double linear_of(double srgb) {
 struct RandomMap {
     int width = 0, height = 0;
     std::vector<IndexTexel> texels;
+    bool compressed_tints = true;
     [[nodiscard]] const IndexTexel& at(int x, int y) const {
         return texels[size_t(std::clamp(y, 0, height - 1)) * size_t(width) +
                       size_t(std::clamp(x, 0, width - 1))];
+    }
+    // 0…1: as the page of a level shows it, whose blocks are of the level's own vertices.
+    [[nodiscard]] glm::dvec3 tint(int x, int y, int level) const {
+        const IndexTexel& exact = at(x << level, y << level);
+        if (!compressed_tints) return glm::dvec3(exact.tint[0], exact.tint[1], exact.tint[2]) / 255.0;
+        const glm::ivec2 first(x & ~3, y & ~3);
+        std::array<IndexTexel, 16> block;
+        for (int i = 0; i < 16; ++i)
+            block[size_t(i)] = at((first.x + i % 4) << level, (first.y + i / 4) << level);
+        glm::uvec2 encoded;
+        encode_tint_blocks(block, 4, {0, 0, 1, 1}, {&encoded, 1});
+        return shown_tint(encoded, (y & 3) * 4 + (x & 3));
     }
 };
 
 // Speckles of all layers in some places, larger areas in others; tints that are not dark.
 inline RandomMap write_random_map(World& w) {
     const glm::ivec2 size = w.document().index_size_texels();
-    RandomMap map{size.x, size.y, std::vector<IndexTexel>(size_t(size.x) * size_t(size.y))};
+    RandomMap map{size.x, size.y, std::vector<IndexTexel>(size_t(size.x) * size_t(size.y)),
+                  w.index->compressed_tints()};
     for (size_t i = 0; i < map.texels.size(); ++i) {
         IndexTexel& t = map.texels[i];
         const bool speckled = i / 16 % 2 == 0;
@@ -232,7 +247,7 @@ inline Channels plain_material(const PlainWorld& w, glm::dvec2 world, double tex
             const Section section = w.ground.tile_hiding ? section_of(x, y) : Section{};
             Merged& m = merged[{t.layer, section.turn, section.y & 1, section.x & 1}];
             m.alpha += weight;
-            m.tint += weight * glm::dvec3(t.tint[0], t.tint[1], t.tint[2]) / 255.0;
+            m.tint += weight * w.map.tint(int(corner.x) + i, int(corner.y) + j, level);
             m.section = section;
             if (turns) turns->insert(section.turn);
         }

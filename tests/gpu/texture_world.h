@@ -53,6 +53,7 @@ inline LayerTextures make_layer(int seed, bool flat, int size_texels = 64) {
 struct WorldLayers {
     int texels = 64;
     uint64_t budget_bytes = LayerSet::kBudgetBytes;
+    bool compressed_tints = true;
 };
 
 struct World {
@@ -68,7 +69,8 @@ struct World {
                                 make_layer(seed++, flat_layers, set.texels)));
         ring = need(gpu::FrameRing::create(gpu::test_device(), 2));
         layers = need(LayerSet::create(*ring, document(), set.budget_bytes));
-        index = need(IndexMap::create(&gpu::test_device(), document(), {.slot_count = 64}));
+        index = need(IndexMap::create(&gpu::test_device(), document(),
+                                      {.slot_count = 40, .compressed_tints = set.compressed_tints}));
         texture = need(VirtualTexture::create(gpu::test_device(), document(), *index, *layers, desc));
     }
     Document& document() { return fixture.document(); }

@@ -134,7 +134,8 @@ def test_filter(plain, tmp_path):
 
 
 def test_materials(plain):
-    (_, pages), (_, hidden), (_, transitions), (_, steps), (_, masks), (_, depth) = bench("materials", plain)
+    (_, pages), (_, hidden), (_, transitions), (_, steps), (_, masks), (_, depth), (_, tints) = bench(
+        "materials", plain)
     assert [row["layers"] for row in pages] == [1] * 5 + [4] * 7
     cost = {(row["layers"], row["with"]): row for row in pages}
     assert cost[1, "plain"]["layer lookups a texel"] == 1
@@ -145,6 +146,10 @@ def test_materials(plain):
             assert row["as it is"] < 0.2 < row["mean of the first mip"]
     for row in hidden:
         assert row["peak, hidden"] < row["peak, plain"] <= 1.2
+    for row in tints:
+        assert (row["rms of 255"] > 0) == (row["tints"] == "BC1") and row["rms of 255"] < 2
+    by_tints = {row["tints"]: row["cache MB"] for row in tints}
+    assert by_tints["BC1"] < 0.45 * by_tints["RGBA8"]
     for row in transitions:
         assert row["mip 0 rms/255"] == 0
         if row["threshold"] in (0, 1):
