@@ -20,7 +20,10 @@ Json counters(const VirtualMap::Counters& c) {
 }  // namespace
 
 Json to_report(const Dirt& dirt) {
-    return {{"height", rects(dirt.height)}, {"index", rects(dirt.index)}, {"texture", rects(dirt.texture)}};
+    return {{"height", rects(dirt.height)},
+            {"index", rects(dirt.index)},
+            {"texture", rects(dirt.texture)},
+            {"cutout", rects(dirt.cutout)}};
 }
 
 Json to_report(const WeightsReport& r) {
@@ -130,6 +133,11 @@ Json to_report(const FrameStatistics& s) {
             {"index", counters(s.index)},
             {"texture", to_report(s.texture)},
             {"layers", {{"files", s.layers.files}, {"slots", s.layers.slots}, {"loads", s.layers.loads}}},
+            {"cutouts",
+             {{"mixed", s.cutouts.mixed},
+              {"gone", s.cutouts.gone},
+              {"not_shown", s.cutouts.not_shown},
+              {"stale", s.cutouts.stale}}},
             {"memory_bytes", memory},
             {"passes", passes}};
 }

@@ -355,10 +355,15 @@ Result<IndexTexel> Session::layer_at(double x_m, double y_m) {
     return query_indices_->texel_at(x_m, y_m);
 }
 
-Result<std::optional<glm::dvec3>> Session::ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m) {
-    if (renderer_) return renderer_->ray_cast(origin_m, direction, max_m);
+Result<std::optional<glm::dvec3>> Session::ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m,
+                                                    Holes holes) {
+    if (renderer_) return renderer_->ray_cast(origin_m, direction, max_m, holes);
     LOAM_TRY(make_query_maps());
-    return query_heights_->ray_cast(origin_m, direction, max_m);
+    return query_heights_->ray_cast(origin_m, direction, max_m, holes);
+}
+
+bool Session::is_cut(double x_m, double y_m) const {
+    return CutoutMap::is_cut(*document_, x_m, y_m);
 }
 
 Status save_png(const std::filesystem::path& file, const Picture& picture) {

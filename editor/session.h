@@ -109,8 +109,10 @@ class Session {
     Result<double> height_m(double x_m, double y_m);
     Result<glm::dvec3> normal(double x_m, double y_m);
     Result<IndexTexel> layer_at(double x_m, double y_m);
+    static constexpr double kLongestRay_m = 50'000;
     Result<std::optional<glm::dvec3>> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction,
-                                               double max_m = 50'000);
+                                               double max_m = kLongestRay_m, Holes holes = Holes::open);
+    [[nodiscard]] bool is_cut(double x_m, double y_m) const;  // a hole; off the map: no
     // A view of the whole map from the south-west, above the ground.
     [[nodiscard]] Camera default_camera();
 

@@ -54,6 +54,8 @@ std::string_view program(Icon icon) {
             return "M 3 17 L 17 17 M 3.5 13.5 L 3.5 11 8 11 8.4 8 M 16.5 13.5 L 16.5 11 12 11 11.6 8 M 3.5 "
                    "13.5 L "
                    "16.5 13.5 M 11.6 8 C 10 5.2 3.2 -60 240";
+        case Icon::cutout:
+            return "M 1.5 6.5 L 6.5 6.5 6.5 15.5 13.5 15.5 13.5 6.5 18.5 6.5";
         case Icon::undo:
             return "M 6.5 3.5 L 3 7 6.5 10.5 M 3 7 L 12 7 C 12 11.5 4.5 -90 90 M 12 16 L 7 16";
         case Icon::redo:

@@ -9,7 +9,7 @@ namespace loam::ui {
 
 // clang-format off
 enum class Icon : uint8_t {
-    none, raise, lower, smooth, flatten, noise, paint, crater, footprints, decal, road, stamp, undo, redo, save, open, camera, layers, eye,
+    none, raise, lower, smooth, flatten, noise, paint, crater, footprints, decal, road, stamp, cutout, undo, redo, save, open, camera, layers, eye,
     eye_off, search, settings, play, stop, plus, minus, trash, check, cross, chevron_right, chevron_down, sun, info,
     warning, grid, count
 };

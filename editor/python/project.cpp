@@ -28,6 +28,10 @@ py::object height(Project& p, const py::object& x, const py::object& y) {
     return over_points(x, y, [&](double px, double py_) { return unwrap(p.session().height_m(px, py_)); });
 }
 
+py::object is_cut(Project& p, const py::object& x, const py::object& y) {
+    return over_points(x, y, [&](double px, double py_) { return p.session().is_cut(px, py_); });
+}
+
 py::object layer(Project& p, const py::object& x, const py::object& y) {
     return over_points(
         x, y, [&](double px, double py_) { return int(unwrap(p.session().layer_at(px, py_)).layer); });
@@ -348,6 +352,15 @@ void bind_edits(py::class_<Project>& c) {
         "strength, edge, layer, layer_from, colour.",
         py::arg("image"), py::arg("x"), py::arg("y"));
     c.def(
+        "cutout",
+        [](Project& p, const std::string& form, const py::kwargs& keywords) {
+            keywords["form"] = form;
+            return apply_keywords(p, "cutout", keywords);
+        },
+        "A hole: form box or cylinder (at, half_m, direction, roll_rad), convex (corners) or brush (dabs, "
+        "radius_m); fill=True closes what those before it opened.",
+        py::arg("form"));
+    c.def(
         "add_stamp",
         [](Project& p, const std::string& file, const std::string& name) {
             const AddedStamp added = unwrap(add_stamp(p.session().document().folder(), file, name));
@@ -454,7 +467,9 @@ void bind_queries(py::class_<Project>& c) {
           py::arg("x"), py::arg("y"));
     c.def("normal", &normal, "Unit normals, shape (…, 3).", py::arg("x"), py::arg("y"));
     c.def("layer", &layer, "Layer numbers.", py::arg("x"), py::arg("y"));
-    c.def("ray_cast", &ray_cast, "First hit (x, y, z) of a ray with the ground, or None.", py::arg("origin"),
+    c.def("is_cut", &is_cut, "Whether there is a hole in the ground.", py::arg("x"), py::arg("y"));
+    c.def("ray_cast", &ray_cast,
+          "First hit (x, y, z) of a ray with the ground, or None. It goes through holes.", py::arg("origin"),
           py::arg("direction"), py::arg("max_m") = 50'000.0);
     c.def("stats", &stats, "Figures of document, frame and memory.");
     c.def("history", &history, "The newest commands.", py::arg("newest") = 100);

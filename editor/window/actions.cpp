@@ -31,6 +31,7 @@ constexpr Bound kBound[] = {
     {"decal", Key::digit_8, {}},
     {"road", Key::digit_9, {}},
     {"stamp", Key::digit_0, {}},
+    {"cutout", Key::c, {}},
     {"raise", Key::r, {}},
     {"lower", Key::l, {}},
     {"paint", Key::b, {}},

@@ -16,7 +16,8 @@ constexpr int kHistoryLength = 400; // commands looked at
 constexpr int kMostSteps = 60;      // shown
 
 std::string_view kind_title(const OperatorShape& shape) {
-    constexpr std::string_view names[] = {"Crater", "Footprint", "Decal", "Road", "Volume decal", "Stamp"};
+    constexpr std::string_view names[] = {"Crater",       "Footprint", "Decal", "Road",
+                                          "Volume decal", "Stamp",     "Cutout"};
     static_assert(std::size(names) == std::variant_size_v<OperatorShape>);
     return names[shape.index()];
 }

@@ -147,6 +147,27 @@ void stamp_properties(ui::Ui& ui, App& app) {
     ui::checkbox(ui, "Colours", stamp.colour);
 }
 
+void cutout_properties(ui::Ui& ui, App& app) {
+    CutoutDesc& cutout = app.tools.settings.cutout;
+    constexpr std::string_view kForms[] = {"Brush", "Box", "Cylinder"};
+    constexpr CutoutForm kFormOf[] = {CutoutForm::brush, CutoutForm::box, CutoutForm::cylinder};
+    int form = int(std::find(std::begin(kFormOf), std::end(kFormOf), cutout.form) - std::begin(kFormOf));
+    ui::combo(ui, "Form", form, kForms);
+    cutout.form = kFormOf[form];
+    brush_properties(ui, app.tools.brush(), false);
+    ui.push_disabled(cutout.form == CutoutForm::brush);
+    ui::slider(ui, "Stretch", cutout.stretch, {.min = 0.1, .max = 10, .decimals = 2, .logarithmic = true});
+    ui::slider(ui, "Depth", cutout.depth_m,
+               {.min = 0.1,
+                .max = 500,
+                .decimals = 1,
+                .unit = "m",
+                .logarithmic = true,
+                .tooltip = "Below the ground and above it"});
+    ui.pop_disabled();
+    ui::paragraph(ui, "Ctrl closes holes", ui::Tone::dim);
+}
+
 // The whole map, or all of one layer, under the paint tool's masks.
 void fill_properties(ui::Ui& ui, App& app) {
     std::vector<std::string_view> names{"every layer"};
@@ -186,6 +207,9 @@ void tool_properties(App& app, ui::Ui& ui) {
         case Tool::footprints: gait_properties(ui, settings.gait); break;
         case Tool::decal: decal_properties(ui, app); break;
         case Tool::road: road_properties(ui, app); break;
+        case Tool::cutout:
+            cutout_properties(ui, app);
+            break;
         case Tool::stamp:
             stamp_properties(ui, app);
             break;

@@ -15,6 +15,8 @@ ui::Icon tool_icon(Tool tool) {
         case Tool::road: return ui::Icon::road;
         case Tool::stamp:
             return ui::Icon::stamp;
+        case Tool::cutout:
+            return ui::Icon::cutout;
     }
     return ui::Icon::none;
 }
@@ -34,6 +36,8 @@ std::string_view tool_hint(Tool tool) {
         case Tool::road: return "Click place by place, drag a place to move it. Enter, or a click on the last, ends";
         case Tool::stamp:
             return "Lay a picture as height: click, or drag to turn it";
+        case Tool::cutout:
+            return "Cut a hole into the ground. Ctrl closes it again";
     }
     return {};
 }

@@ -12,10 +12,12 @@ namespace {
 constexpr double kDragBegins_px = 5; // a click may tremble so much
 constexpr double kCoarse_m = 0.25;   // a road's outline may miss it by so much
 
-constexpr std::array<std::string_view, kToolCount> kNames = {
-    "raise", "lower", "smooth", "flatten", "paint", "crater", "footprints", "decal", "road", "stamp"};
-constexpr std::array<std::string_view, kToolCount> kTitles = {
-    "Raise", "Lower", "Smooth", "Flatten", "Paint", "Crater", "Footprints", "Decal", "Road", "Stamp"};
+constexpr std::array<std::string_view, kToolCount> kNames = {"raise", "lower",  "smooth",     "flatten",
+                                                             "paint", "crater", "footprints", "decal",
+                                                             "road",  "stamp",  "cutout"};
+constexpr std::array<std::string_view, kToolCount> kTitles = {"Raise", "Lower",  "Smooth",     "Flatten",
+                                                              "Paint", "Crater", "Footprints", "Decal",
+                                                              "Road",  "Stamp",  "Cutout"};
 
 SculptMode mode_of(Tool tool) {
     switch (tool) {
@@ -46,6 +48,7 @@ ToolController::ToolController(ToolQueries queries) : queries_(std::move(queries
     settings.brushes[size_t(Tool::crater)].radius_m = 8;
     settings.brushes[size_t(Tool::decal)] = {.radius_m = 4, .strength = 1, .hardness = 0.7};
     settings.brushes[size_t(Tool::stamp)] = {.radius_m = 40, .strength = 1, .hardness = 0.8};
+    settings.brushes[size_t(Tool::cutout)].radius_m = 5;
     settings.brushes[size_t(Tool::road)] = {.radius_m = 3, .strength = 1, .hardness = 0.7};
 }
 
@@ -64,6 +67,7 @@ void ToolController::begin(const ToolInput& input) {
         if (tool == Tool::lower) stroke_tool_ = Tool::raise;
         picking_ = tool == Tool::flatten || tool == Tool::paint;
     }
+    closing_ = tool == Tool::cutout && input.ctrl;
     if (input.shift && is_sculpting(tool)) stroke_tool_ = Tool::smooth;
     stroking_ = true;
     group_ = picking_ ? 0 : queries_.next_group();
@@ -175,7 +179,7 @@ TerrainDecal ToolController::decal_at(const ToolInput& input) const {
     TerrainDecal d;
     d.x_m = center_m_.x;
     d.y_m = center_m_.y;
-    d.half_m = {brush().radius_m, brush().radius_m * settings.decal.stretch};
+    d.half_m = box_half_m();
     d.heading_rad = heading_rad(input);
     d.outline = settings.decal.ellipse ? DecalOutline::ellipse : DecalOutline::rectangle;
     d.material = material();
@@ -197,7 +201,7 @@ Stamp ToolController::stamp_at(const ToolInput& input) const {
     s.image = desc.image;
     s.x_m = center_m_.x;
     s.y_m = center_m_.y;
-    s.half_m = {brush().radius_m, brush().radius_m * desc.stretch};
+    s.half_m = box_half_m();
     s.heading_rad = heading_rad(input);
     s.mode = desc.mode;
     s.height_m = desc.height_m;
@@ -213,6 +217,30 @@ Stamp ToolController::stamp_at(const ToolInput& input) const {
 std::optional<Command> ToolController::stamp(const ToolInput& input) {
     if (!input.released || settings.stamp.image.empty()) return {};
     return Command{.body = AddOperatorCommand{stamp_at(input)}, .group = group_};
+}
+
+// A volume stands on the ground where the button went down, as deep as it is high.
+std::optional<Command> ToolController::cutout(const ToolInput& input) {
+    Cutout c{.form = settings.cutout.form};
+    c.fill = closing_;
+    if (c.form == CutoutForm::brush) {
+        c.dabs = dabs(input, false);
+        c.radius_m = brush().radius_m;
+        if (c.dabs.empty()) return {};
+    } else {
+        if (!input.released) return {};
+        c.center_m = glm::dvec3(center_m_, target_m_);
+        c.half_m = glm::dvec3(box_half_m(), settings.cutout.depth_m);
+        c.roll_rad = -heading_rad(input);  // headings are clockwise
+    }
+    return Command{.body = AddOperatorCommand{std::move(c)}, .group = group_};
+}
+
+glm::dvec2 ToolController::box_half_m() const {
+    const double stretch = tool == Tool::stamp    ? settings.stamp.stretch
+                           : tool == Tool::cutout ? settings.cutout.stretch
+                                                  : settings.decal.stretch;
+    return {brush().radius_m, brush().radius_m * stretch};
 }
 
 std::vector<SplinePoint> ToolController::road_points(const std::vector<glm::dvec3>& places) const {
@@ -272,6 +300,8 @@ std::vector<Command> ToolController::update(const ToolInput& input) {
         else if (tool == Tool::decal) command = decal(input);
         else if (tool == Tool::stamp)
             command = stamp(input);
+        else if (tool == Tool::cutout)
+            command = cutout(input);
         else if (tool == Tool::paint) command = paint(input);
         else command = sculpt(input);
     }
@@ -285,7 +315,7 @@ std::vector<ToolController::Outline> ToolController::outlines(const ToolInput& i
     if (places_box() && stroking_) {
         const double heading = heading_rad(input);
         const glm::dvec2 up(std::sin(heading), std::cos(heading)), right(up.y, -up.x);
-        const glm::dvec2 half_m = tool == Tool::stamp ? stamp_at(input).half_m : decal_at(input).half_m;
+        const glm::dvec2 half_m = box_half_m();
         Outline box{.places_m = {}, .closed = true};
         constexpr int kSteps = 8; // a side, so that it follows the ground
         const glm::dvec2 corners[] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}, {-1, -1}};
@@ -319,7 +349,8 @@ std::optional<ToolController::Ring> ToolController::ring(const ToolInput& input)
     if (tool == Tool::crater) return Ring{stroking_ ? center_m_ : at, crater_radius_m(input), 0};
     if (tool == Tool::footprints) return Ring{at, settings.gait.length_m * 0.5, 0};
     if (places_box() && stroking_) return {};
-    return Ring{at, brush().radius_m, tool == Tool::road ? 0 : brush().hardness};
+    const bool even = tool == Tool::road || tool == Tool::cutout;
+    return Ring{at, brush().radius_m, even ? 0 : brush().hardness};
 }
 
 } // namespace loam::window

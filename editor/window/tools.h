@@ -1,8 +1,8 @@
 // The tools: from what the left mouse button does over the ground to commands. No window, no device.
 //
-// A stroke is everything between press and release; its commands share one group and are undone together. Modifiers
-// while pressing: Ctrl turns raise into lower and back, picks the height (flatten) or the layer (paint) under the
-// cursor; Shift smooths.
+// A stroke is everything between press and release; its commands share one group and are undone together.
+// Modifiers while pressing: Ctrl turns raise into lower and back, picks the height (flatten) or the layer
+// (paint) under the cursor, closes holes instead of cutting them; Shift smooths.
 #pragma once
 
 #include <array>
@@ -20,8 +20,8 @@
 
 namespace loam::window {
 
-enum class Tool { raise, lower, smooth, flatten, paint, crater, footprints, decal, road, stamp };
-inline constexpr int kToolCount = 10;
+enum class Tool { raise, lower, smooth, flatten, paint, crater, footprints, decal, road, stamp, cutout };
+inline constexpr int kToolCount = 11;
 [[nodiscard]] std::string_view tool_name(Tool tool);   // "raise": also the action's name
 [[nodiscard]] std::string_view tool_title(Tool tool);  // "Raise"
 
@@ -53,6 +53,12 @@ struct StampDesc {
     bool colour = false;
 };
 
+struct CutoutDesc {
+    CutoutForm form = CutoutForm::brush;  // or box, or cylinder
+    double stretch = 1;                   // length over width; the brush's radius is half the width
+    double depth_m = 4;                   // of a volume, below the ground and above it
+};
+
 struct ToolSettings {
     std::array<Brush, kToolCount> brushes; // a tool keeps its own
     double flatten_target_m = 0;
@@ -69,6 +75,7 @@ struct ToolSettings {
     DecalDesc decal;
     RoadDesc road; // the brush's radius is half the width
     StampDesc stamp;
+    CutoutDesc cutout;
 };
 
 struct ToolInput {
@@ -132,7 +139,12 @@ class ToolController {
     std::optional<Command> decal(const ToolInput& input);
     std::optional<Command> road(const ToolInput& input);
     std::optional<Command> stamp(const ToolInput& input);
-    [[nodiscard]] bool places_box() const { return tool == Tool::decal || tool == Tool::stamp; }
+    std::optional<Command> cutout(const ToolInput& input);
+    [[nodiscard]] bool places_box() const {
+        return tool == Tool::decal || tool == Tool::stamp ||
+               (tool == Tool::cutout && settings.cutout.form != CutoutForm::brush);
+    }
+    [[nodiscard]] glm::dvec2 box_half_m() const;                     // of what is being placed
     [[nodiscard]] double heading_rad(const ToolInput& input) const;  // of what is being placed
     [[nodiscard]] TerrainDecal decal_at(const ToolInput& input) const;
     [[nodiscard]] Stamp stamp_at(const ToolInput& input) const;
@@ -142,7 +154,7 @@ class ToolController {
     [[nodiscard]] double crater_radius_m(const ToolInput& input) const;
 
     ToolQueries queries_;
-    bool stroking_ = false, picking_ = false;
+    bool stroking_ = false, picking_ = false, closing_ = false;
     Tool stroke_tool_ = Tool::raise; // after modifiers
     uint64_t group_ = 0;
     uint32_t command_count_ = 0;

@@ -73,9 +73,13 @@ void App::find_cursor_ground(const ui::ViewportResponse& response) {
         cursor_->z = height_at(cursor_->x, cursor_->y);
         return;
     }
-    const auto hit = session.ray_cast(eye.position_m,
-                                      eye.ray(response.mouse.x, response.mouse.y, std::max(1.0f, response.rect.w),
-                                              std::max(1.0f, response.rect.h)));
+    // Under the tool that closes holes the ground is whole.
+    const Holes holes = tools.tool == Tool::cutout ? Holes::closed : Holes::open;
+    const auto hit =
+        session.ray_cast(eye.position_m,
+                         eye.ray(response.mouse.x, response.mouse.y, std::max(1.0f, response.rect.w),
+                                 std::max(1.0f, response.rect.h)),
+                         Session::kLongestRay_m, holes);
     cursor_ = hit ? *hit : std::nullopt;
 }
 

@@ -29,18 +29,21 @@
 //       (ground_decal.h says what they mean); all of it may be left out
 //   {"cmd":"stamp","image":"ridge","x":0,"y":0,"half_m":[50,50],"heading_rad":0,"mode":"add","height_m":20,
 //       "base_m":0,"strength":1,"edge":0.1,"layer":"rock","layer_from":0.5,"colour":false}  (stamp.h)
+//   {"cmd":"cutout","form":"box","at":[x,y,z],"half_m":[4,4,3],"direction":[0,0,-1],"roll_rad":0,"fill":false}
+//       forms: box and cylinder; "convex" with "corners":[[x,y,z],…]; "brush" with "dabs":[[x,y],…] and
+//       "radius_m":5. A fill closes what those before it opened  (cutout.h)
 //   {"cmd":"transition","name":"edge","from":"grass","to":"rock","threshold":0.5}   makes one, or changes
 //   what is
 //       given of it; {"cmd":"transition","name":"edge","remove":true}   (transitions.h)
 //   {"cmd":"edit","id":12,"kind":"decal", …}   replaces all parameters; kinds: crater, footprint, decal,
-//       spline, volume, stamp
+//       spline, volume, stamp, cutout
 //   {"cmd":"reorder","id":12,"order":3}   evaluated in ascending order, then id; a new operator's order is
 //   its id
 //   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}
 //   {"cmd":"undo"}    {"cmd":"redo"}
-// Required: mode and dabs; target_m to flatten; layer or tint; x and y (of a fill no dabs); prints; points;
-// at; id, enabled and order; name. The rest have the defaults below. Any command may carry "group": n.
-// Consecutive commands of one group undo together.
+// Required: mode and dabs; form; target_m to flatten; layer or tint; x and y (of a fill no dabs); prints;
+// points; at; id, enabled and order; name. The rest have the defaults below. Any command may carry "group":
+// n. Consecutive commands of one group undo together.
 #pragma once
 
 #include <optional>
@@ -109,7 +112,7 @@ struct CraterCommand {
 struct FootprintsCommand {
     std::vector<Footprint> prints;
 };
-struct AddOperatorCommand {  // decal, spline, volume
+struct AddOperatorCommand {  // all but craters and footprints
     OperatorShape shape;
 };
 struct EditOperatorCommand {

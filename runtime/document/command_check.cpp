@@ -136,15 +136,20 @@ Status check(const TerrainDecal& d) {
     return check(d.material);
 }
 
-Status check(const VolumeDecal& v) {
-    LOAM_TRY(place_ok("the volume", v.center_m.x, v.center_m.y));
-    LOAM_TRY(in_range("the volume's z", v.center_m.z, -kHighest_m, kHighest_m));
-    for (int axis = 0; axis < 3; ++axis) LOAM_TRY(half_ok(v.half_m[axis], axis < 2 ? -kLargestHalf_m : 0));
+Status check_axes(std::string_view what, const glm::dvec3& center_m, const glm::dvec3& direction,
+                  double roll_rad) {
+    LOAM_TRY(place_ok(fmt::format("the {}", what), center_m.x, center_m.y));
+    LOAM_TRY(in_range(fmt::format("the {}'s z", what), center_m.z, -kHighest_m, kHighest_m));
     for (int axis = 0; axis < 3; ++axis)
-        LOAM_TRY(in_range("direction", v.direction[axis], -kFarthest_m, kFarthest_m));
-    if (!(glm::dot(v.direction, v.direction) > 1e-12))
-        return error("the direction of a volume has no length, it must point where the volume projects");
-    LOAM_TRY(in_range("roll_rad", v.roll_rad, -1000, 1000));
+        LOAM_TRY(in_range("direction", direction[axis], -kFarthest_m, kFarthest_m));
+    if (!(glm::dot(direction, direction) > 1e-12))
+        return error("the direction of a {0} has no length, it must point where the {0} projects", what);
+    return in_range("roll_rad", roll_rad, -1000, 1000);
+}
+
+Status check(const VolumeDecal& v) {
+    LOAM_TRY(check_axes("volume", v.center_m, v.direction, v.roll_rad));
+    for (int axis = 0; axis < 3; ++axis) LOAM_TRY(half_ok(v.half_m[axis], axis < 2 ? -kLargestHalf_m : 0));
     return check(v.material);
 }
 
@@ -182,6 +187,26 @@ Status check(const Stamp& s) {
     LOAM_TRY(in_range("strength", s.strength, 0, 1));
     LOAM_TRY(in_range("edge", s.edge, 0, 1));
     return in_range("layer_from", s.layer_from, 0, 1);
+}
+
+Status check(const Cutout& c) {
+    if (c.form == CutoutForm::brush) {
+        LOAM_TRY(dabs_ok(c.dabs));
+        return in_range("radius_m", c.radius_m, 0.01, kLargestHalf_m);
+    }
+    if (c.form == CutoutForm::convex) {
+        if (c.corners.size() < 4 || c.corners.size() > kMaxCutoutCorners)
+            return error("a convex cutout has {} corners, must be 4 … {}", c.corners.size(),
+                         kMaxCutoutCorners);
+        for (size_t i = 0; i < c.corners.size(); ++i) {
+            LOAM_TRY(place_ok(fmt::format("corner {}", i), c.corners[i].x, c.corners[i].y));
+            LOAM_TRY(in_range(fmt::format("z of corner {}", i), c.corners[i].z, -kHighest_m, kHighest_m));
+        }
+        const auto planes = hull_planes(c.corners);
+        return planes.ok() ? Status() : planes.error();
+    }
+    for (int axis = 0; axis < 3; ++axis) LOAM_TRY(half_ok(c.half_m[axis], 0));
+    return check_axes("cutout", c.center_m, c.direction, c.roll_rad);
 }
 
 Status check(const CraterCommand& c) {

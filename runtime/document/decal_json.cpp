@@ -92,7 +92,36 @@ const char* name_of(DecalOutline outline) {
     return outline == DecalOutline::ellipse ? "ellipse" : "rectangle";
 }
 
+constexpr std::pair<const char*, CutoutForm> kCutoutForms[] = {{"box", CutoutForm::box},
+                                                               {"cylinder", CutoutForm::cylinder},
+                                                               {"convex", CutoutForm::convex},
+                                                               {"brush", CutoutForm::brush}};
+
+CutoutForm read_form(Fields& fields) {
+    const std::string name = fields.text("form");
+    for (const auto& [known, value] : kCutoutForms)
+        if (name == known) return value;
+    refuse("{}: unknown form \"{}\" (known: box, cylinder, convex, brush)", fields.place(), name);
+}
+
 }  // namespace
+
+std::vector<glm::dvec2> read_dabs(Fields& fields) {
+    std::vector<glm::dvec2> dabs;
+    for (const Json& dab : fields.list("dabs")) {
+        if (!dab.is_array() || dab.size() != 2)
+            refuse("{}: dab {} must be [x, y]", fields.place(), dabs.size());
+        const std::string what = fmt::format("dabs[{}]", dabs.size());
+        dabs.emplace_back(fields.number_of(dab[0], what), fields.number_of(dab[1], what));
+    }
+    return dabs;
+}
+
+Json dabs_json(const std::vector<glm::dvec2>& dabs) {
+    Json list = Json::array();
+    for (const glm::dvec2& dab : dabs) list.push_back({dab.x, dab.y});
+    return list;
+}
 
 TerrainDecal read_decal(Fields& fields) {
     TerrainDecal d;
@@ -156,6 +185,26 @@ Stamp read_stamp(Fields& fields) {
     return s;
 }
 
+// Only what its form has.
+Cutout read_cutout(Fields& fields) {
+    Cutout c;
+    c.form = read_form(fields);
+    c.fill = fields.truth("fill", c.fill);
+    if (c.form == CutoutForm::brush) {
+        c.dabs = read_dabs(fields);
+        c.radius_m = fields.number("radius_m", c.radius_m);
+    } else if (c.form == CutoutForm::convex) {
+        for (const Json& corner : fields.list("corners"))
+            c.corners.push_back(read_vector<glm::dvec3>(fields, corner, "corners"));
+    } else {
+        c.center_m = read_vector<glm::dvec3>(fields, fields.need("at"), "at");
+        c.half_m = read_vector(fields, "half_m", c.half_m);
+        c.direction = read_vector(fields, "direction", c.direction);
+        c.roll_rad = fields.number("roll_rad", 0);
+    }
+    return c;
+}
+
 void write_decal(Json& json, const TerrainDecal& d) {
     json["x"] = d.x_m;
     json["y"] = d.y_m;
@@ -198,6 +247,24 @@ void write_stamp(Json& json, const Stamp& s) {
     json["layer"] = s.layer;
     json["layer_from"] = s.layer_from;
     json["colour"] = s.colour;
+}
+
+void write_cutout(Json& json, const Cutout& c) {
+    for (const auto& [name, form] : kCutoutForms)
+        if (c.form == form) json["form"] = name;
+    json["fill"] = c.fill;
+    if (c.form == CutoutForm::brush) {
+        json["dabs"] = dabs_json(c.dabs);
+        json["radius_m"] = c.radius_m;
+    } else if (c.form == CutoutForm::convex) {
+        json["corners"] = Json::array();
+        for (const glm::dvec3& corner : c.corners) json["corners"].push_back(vector_json(corner));
+    } else {
+        json["at"] = vector_json(c.center_m);
+        json["half_m"] = vector_json(c.half_m);
+        json["direction"] = vector_json(c.direction);
+        json["roll_rad"] = c.roll_rad;
+    }
 }
 
 }  // namespace loam

@@ -1,7 +1,8 @@
-// The parameters of decals, splines and volumes as JSON, both ways. Internal to this folder; what it throws
-// ends in json_text.cpp.
+// The parameters of decals, splines, volumes, stamps and cutouts as JSON, both ways. Internal to this folder;
+// what it throws ends in json_text.cpp.
 #pragma once
 
+#include "runtime/document/cutout.h"
 #include "runtime/document/ground_decal.h"
 #include "runtime/document/json_fields.h"
 #include "runtime/document/stamp.h"
@@ -12,9 +13,14 @@ namespace loam {
 [[nodiscard]] SplineDecal read_spline(Fields& fields);
 [[nodiscard]] VolumeDecal read_volume(Fields& fields);
 [[nodiscard]] Stamp read_stamp(Fields& fields);
+[[nodiscard]] Cutout read_cutout(Fields& fields);
 void write_decal(Json& json, const TerrainDecal& decal);
 void write_spline(Json& json, const SplineDecal& spline);
 void write_volume(Json& json, const VolumeDecal& volume);
 void write_stamp(Json& json, const Stamp& stamp);
+void write_cutout(Json& json, const Cutout& cutout);
+// Places seen from above, [[x, y], …].
+[[nodiscard]] std::vector<glm::dvec2> read_dabs(Fields& fields);
+[[nodiscard]] Json dabs_json(const std::vector<glm::dvec2>& dabs);
 
 }  // namespace loam

@@ -48,6 +48,26 @@ void join_best_pair(std::vector<WorldRect>& rects) {
     rects.erase(rects.begin() + std::ptrdiff_t(best_b));
 }
 
+void write_rects(ByteWriter& writer, const std::vector<WorldRect>& rects) {
+    writer.u32(uint32_t(rects.size()));
+    for (const WorldRect& rect : rects)
+        for (const double edge : {rect.min_x, rect.min_y, rect.max_x, rect.max_y}) writer.real(edge);
+}
+
+std::vector<WorldRect> read_rects(ByteReader& reader) {
+    std::vector<WorldRect> rects;
+    const uint32_t count = reader.u32();
+    for (uint32_t i = 0; i < count && reader.ok(); ++i) {
+        WorldRect rect;
+        rect.min_x = reader.real();
+        rect.min_y = reader.real();
+        rect.max_x = reader.real();
+        rect.max_y = reader.real();
+        rects.push_back(rect);
+    }
+    return rects;
+}
+
 }  // namespace
 
 void merge_rects(std::vector<WorldRect>& rects, size_t most) {
@@ -66,37 +86,26 @@ void append_dirt(Dirt& to, const Dirt& more) {
     to.height.insert(to.height.end(), more.height.begin(), more.height.end());
     to.index.insert(to.index.end(), more.index.begin(), more.index.end());
     to.texture.insert(to.texture.end(), more.texture.begin(), more.texture.end());
+    to.cutout.insert(to.cutout.end(), more.cutout.begin(), more.cutout.end());
     to.texture_size_m = std::max(to.texture_size_m, more.texture_size_m);
     to.layers |= more.layers;
 }
 
 std::vector<uint8_t> dirt_bytes(const Dirt& dirt) {
     ByteWriter writer;
-    for (const auto* rects : {&dirt.height, &dirt.index, &dirt.texture}) {
-        writer.u32(uint32_t(rects->size()));
-        for (const WorldRect& rect : *rects)
-            for (const double edge : {rect.min_x, rect.min_y, rect.max_x, rect.max_y}) writer.real(edge);
-    }
+    for (const auto* rects : {&dirt.height, &dirt.index, &dirt.texture}) write_rects(writer, *rects);
     writer.real(dirt.texture_size_m);
+    write_rects(writer, dirt.cutout);
     return writer.take();
 }
 
 Result<Dirt> dirt_of(std::span<const uint8_t> bytes) {
     ByteReader reader(bytes);
     Dirt dirt;
-    for (auto* rects : {&dirt.height, &dirt.index, &dirt.texture}) {
-        const uint32_t count = reader.u32();
-        for (uint32_t i = 0; i < count && reader.ok(); ++i) {
-            WorldRect rect;
-            rect.min_x = reader.real();
-            rect.min_y = reader.real();
-            rect.max_x = reader.real();
-            rect.max_y = reader.real();
-            rects->push_back(rect);
-        }
-    }
-    // Journals were once written without it.
+    for (auto* rects : {&dirt.height, &dirt.index, &dirt.texture}) *rects = read_rects(reader);
+    // Journals were once written without it, and then without cutouts.
     dirt.texture_size_m = reader.at_end() ? INFINITY : reader.real();
+    if (!reader.at_end()) dirt.cutout = read_rects(reader);
     if (!reader.at_end() || std::isnan(dirt.texture_size_m))
         return error("damaged rectangles of a command in the journal");
     return dirt;

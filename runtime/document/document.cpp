@@ -292,6 +292,9 @@ void Document::operators_over_index(const WorldRect& rect, std::vector<const Ope
 void Document::operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const {
     impl_->operators.over_texture().query(rect, out);
 }
+void Document::operators_over_cutout(const WorldRect& rect, std::vector<const Operator*>& out) const {
+    impl_->operators.over_cutout().query(rect, out);
+}
 std::vector<Operator> Document::operators() const {
     const ReadLock lock(impl_->mutex);
     return impl_->operators.sorted();

@@ -40,9 +40,12 @@ namespace loam {
 // (Operator::texture_size_m); what follows from index or height is derived by the layers that read them.
 struct Dirt {
     std::vector<WorldRect> height, index, texture;
+    std::vector<WorldRect> cutout;  // volumes also follow heights: not in here
     double texture_size_m = 0;
     bool layers = false;  // the layer list is another one: all that shows layers (Renderer::settings_changed)
-    [[nodiscard]] bool empty() const { return height.empty() && index.empty() && texture.empty() && !layers; }
+    [[nodiscard]] bool empty() const {
+        return height.empty() && index.empty() && texture.empty() && cutout.empty() && !layers;
+    }
 };
 
 enum class OpenMode { read_write, read_only };
@@ -99,6 +102,7 @@ class Document {
     void operators_over_height(const WorldRect& rect, std::vector<const Operator*>& out) const;
     void operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const;
     void operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const;
+    void operators_over_cutout(const WorldRect& rect, std::vector<const Operator*>& out) const;
     [[nodiscard]] std::vector<Operator> operators() const;  // a copy, in order (outliner, info)
     [[nodiscard]] ResolvedRoles roles() const;
     [[nodiscard]] std::vector<std::string> stamps() const;       // in the project's folder, sorted

@@ -47,6 +47,7 @@ void merge_dirt(Dirt& dirt, size_t most) {
     merge_rects(dirt.height, most);
     merge_rects(dirt.index, most);
     merge_rects(dirt.texture, most);
+    merge_rects(dirt.cutout, most);
 }
 
 }  // namespace
@@ -130,6 +131,7 @@ void Document::Impl::change_operator(uint64_t id, std::optional<Operator> op, Ch
         append(change.dirt.height, state->height_rects());
         change.dirt.index.push_back(state->index_bounds());
         append(change.dirt.texture, state->texture_rects());
+        append(change.dirt.cutout, state->cutout_rects());
         change.dirt.texture_size_m = std::max(change.dirt.texture_size_m, state->texture_size_m());
     }
     change.operators[id] = std::move(op);

@@ -85,6 +85,9 @@ struct VolumeDecal {
 struct VolumeAxes {
     glm::dvec3 x, y, z;
 };
-[[nodiscard]] VolumeAxes axes_of(const VolumeDecal& volume);
+[[nodiscard]] VolumeAxes axes_of(const glm::dvec3& direction, double roll_rad);
+[[nodiscard]] inline VolumeAxes axes_of(const VolumeDecal& volume) {
+    return axes_of(volume.direction, volume.roll_rad);
+}
 
 }  // namespace loam

@@ -15,23 +15,6 @@ constexpr std::pair<const char*, SculptMode> kModes[] = {{"raise", SculptMode::r
                                                          {"smooth", SculptMode::smooth},
                                                          {"flatten", SculptMode::flatten}};
 
-std::vector<glm::dvec2> read_dabs(Fields& fields) {
-    std::vector<glm::dvec2> dabs;
-    for (const Json& dab : fields.list("dabs")) {
-        if (!dab.is_array() || dab.size() != 2)
-            refuse("{}: dab {} must be [x, y]", fields.place(), dabs.size());
-        const std::string what = fmt::format("dabs[{}]", dabs.size());
-        dabs.emplace_back(fields.number_of(dab[0], what), fields.number_of(dab[1], what));
-    }
-    return dabs;
-}
-
-Json dabs_json(const std::vector<glm::dvec2>& dabs) {
-    Json list = Json::array();
-    for (const glm::dvec2& dab : dabs) list.push_back({dab.x, dab.y});
-    return list;
-}
-
 SculptCommand read_sculpt(Fields& fields) {
     SculptCommand c;
     const std::string mode = fields.text("mode");
@@ -252,8 +235,9 @@ OperatorShape read_shape(const std::string& kind, Fields& fields) {
     if (kind == "spline") return read_spline(fields);
     if (kind == "volume") return read_volume(fields);
     if (kind == "stamp") return read_stamp(fields);
-    refuse("{}: unknown kind \"{}\" (known: crater, footprint, decal, spline, volume, stamp)", fields.place(),
-           kind);
+    if (kind == "cutout") return read_cutout(fields);
+    refuse("{}: unknown kind \"{}\" (known: crater, footprint, decal, spline, volume, stamp, cutout)",
+           fields.place(), kind);
 }
 
 // Its kind's name; its parameters go into `json`.
@@ -286,6 +270,10 @@ struct ShapeWriter {
         write_stamp(json, stamp);
         return "stamp";
     }
+    const char* operator()(const Cutout& cutout) const {
+        write_cutout(json, cutout);
+        return "cutout";
+    }
 };
 
 void write(Json& json, const AddOperatorCommand& c) {
@@ -308,7 +296,7 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "fill") return read_fill(fields);
     if (name == "crater") return CraterCommand{read_crater(fields)};
     if (name == "footprints") return read_footprints(fields);
-    if (name == "decal" || name == "spline" || name == "volume" || name == "stamp")
+    if (name == "decal" || name == "spline" || name == "volume" || name == "stamp" || name == "cutout")
         return AddOperatorCommand{read_shape(name, fields)};
     if (name == "edit") {
         const uint64_t id = fields.whole("id", kMaxId);
@@ -330,7 +318,7 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "redo") return RedoCommand{};
     refuse(
         "unknown command \"{}\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-        "stamp, edit, reorder, operator, remove, transition, undo, redo)",
+        "stamp, cutout, edit, reorder, operator, remove, transition, undo, redo)",
         name);
 }
 

@@ -212,6 +212,7 @@ struct HeightRects {
     Rects operator()(const TerrainDecal&) const { return {}; }
     Rects operator()(const VolumeDecal&) const { return {}; }
     Rects operator()(const Stamp& s) const { return changes_heights(s) ? Rects{box_of(s)} : Rects{}; }
+    Rects operator()(const Cutout&) const { return {}; }
 };
 
 struct TextureRects {
@@ -231,6 +232,7 @@ struct TextureRects {
         return {around(v.center_m.x, v.center_m.y, half.x, half.y)};
     }
     Rects operator()(const Stamp&) const { return {}; }
+    Rects operator()(const Cutout&) const { return {}; }
 };
 
 struct ApplyHeight {
@@ -242,6 +244,7 @@ struct ApplyHeight {
     }
     void operator()(const TerrainDecal&) const {}
     void operator()(const VolumeDecal&) const {}
+    void operator()(const Cutout&) const {}
     void operator()(const Stamp& s) const {
         if (!changes_heights(s)) return;
         const StampSampler at(s);
@@ -259,12 +262,12 @@ const DecalMaterial* material_of(const OperatorShape& shape) {
     return nullptr;
 }
 
-VolumeAxes axes_of(const VolumeDecal& volume) {
-    const glm::dvec3 z = -glm::normalize(volume.direction);
+VolumeAxes axes_of(const glm::dvec3& direction, double roll_rad) {
+    const glm::dvec3 z = -glm::normalize(direction);
     const double level = std::hypot(z.x, z.y);
     const glm::dvec3 x = level > 1e-9 ? glm::dvec3(-z.y / level, z.x / level, 0) : glm::dvec3(1, 0, 0);
     const glm::dvec3 y = glm::cross(z, x);
-    const double c = std::cos(volume.roll_rad), s = std::sin(volume.roll_rad);
+    const double c = std::cos(roll_rad), s = std::sin(roll_rad);
     return {x * c + y * s, y * c - x * s, z};
 }
 
@@ -301,10 +304,18 @@ double size_m(const VolumeDecal& volume) {
 double size_m(const Stamp&) {
     return 0;
 }
+double size_m(const Cutout&) {
+    return 0;
+}
 
 void prepare(Operator& op) {
     if (auto* spline = std::get_if<SplineDecal>(&op.shape))
         spline->path = std::make_shared<SplinePath>(spline->points);
+    if (auto* cutout = std::get_if<Cutout>(&op.shape); cutout && cutout->form == CutoutForm::convex) {
+        auto planes = hull_planes(cutout->corners);
+        LOAM_CHECK(planes.ok(), "a command was checked before its operator is prepared");
+        cutout->planes = std::make_shared<const std::vector<glm::dvec4>>(std::move(*planes));
+    }
 }
 
 std::vector<WorldRect> Operator::height_rects() const {
@@ -324,6 +335,11 @@ WorldRect Operator::index_bounds() const {
         return square(crater->x_m, crater->y_m, crater->radius_m * double(kCraterMarkReach));
     const auto* stamp = std::get_if<Stamp>(&shape);
     return stamp && changes_index(*stamp) ? box_of(*stamp) : WorldRect{};
+}
+
+std::vector<WorldRect> Operator::cutout_rects() const {
+    const auto* cutout = std::get_if<Cutout>(&shape);
+    return cutout ? rects_of(*cutout) : std::vector<WorldRect>();
 }
 
 WorldRect Operator::texture_bounds() const {

@@ -11,6 +11,7 @@
 
 #include "runtime/base/rect.h"
 #include "runtime/base/result.h"
+#include "runtime/document/cutout.h"
 #include "runtime/document/ground_decal.h"
 #include "runtime/document/stamp.h"
 #include "runtime/store/index_texel.h"
@@ -44,8 +45,9 @@ struct Footprint {
 [[nodiscard]] double size_m(const SplineDecal& spline);
 [[nodiscard]] double size_m(const VolumeDecal& volume);
 [[nodiscard]] double size_m(const Stamp& stamp);  // 0: it draws nothing
+[[nodiscard]] double size_m(const Cutout& cutout);
 
-using OperatorShape = std::variant<Crater, Footprint, TerrainDecal, SplineDecal, VolumeDecal, Stamp>;
+using OperatorShape = std::variant<Crater, Footprint, TerrainDecal, SplineDecal, VolumeDecal, Stamp, Cutout>;
 [[nodiscard]] const DecalMaterial* material_of(const OperatorShape& shape);  // null: has none
 
 struct Operator {
@@ -63,12 +65,13 @@ struct Operator {
     // none.
     [[nodiscard]] std::vector<WorldRect> height_rects() const;
     [[nodiscard]] std::vector<WorldRect> texture_rects() const;
+    [[nodiscard]] std::vector<WorldRect> cutout_rects() const;
     // Of what is drawn into the texture: from texels twice as wide on none of it shows. 0: draws nothing.
     [[nodiscard]] double texture_size_m() const;
 };
 
-// Works out what is kept beside an operator's parameters (a spline's path). Every operator of a document has
-// been through it.
+// Works out what is kept beside an operator's parameters (a spline's path, a hull's planes). Every operator
+// of a document has been through it.
 void prepare(Operator& op);
 
 // A grid of samples to change in place: sample (i, j) is at (x0 + i*step, y0 + j*step) metres.
@@ -86,8 +89,8 @@ struct ResolvedRoles {  // LayerRoles as indices
 
 // Footprints change heights and are drawn into the texture; craters change heights, layers and tint, and may
 // be drawn too; splines are drawn and may carve heights; terrain and volume decals are drawn; stamps change
-// heights, layers and tint. The mathematics of craters and footprints is in shaders/document/crater_math.h
-// and footprint_math.h, for shaders as well.
+// heights, layers and tint; cutouts cut (maps/cutout_map.h). The mathematics of craters and footprints is in
+// shaders/document/crater_math.h and footprint_math.h, for shaders as well.
 //
 // Heights in metres. A sample's result depends on the sample's position only, never on the grid it is part
 // of: pages of every level must agree.

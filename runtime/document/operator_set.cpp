@@ -10,6 +10,7 @@ void OperatorSet::set(const Operator& op) {
     for (const WorldRect& rect : op.height_rects()) height_.add(owned.get(), rect);
     index_.add(owned.get(), op.index_bounds());
     for (const WorldRect& rect : op.texture_rects()) texture_.add(owned.get(), rect);
+    for (const WorldRect& rect : op.cutout_rects()) cutout_.add(owned.get(), rect);
     by_id_.emplace(op.id, std::move(owned));
 }
 
@@ -20,6 +21,7 @@ void OperatorSet::remove(uint64_t id) {
     for (const WorldRect& rect : op->height_rects()) height_.remove(op, rect);
     index_.remove(op, op->index_bounds());
     for (const WorldRect& rect : op->texture_rects()) texture_.remove(op, rect);
+    for (const WorldRect& rect : op->cutout_rects()) cutout_.remove(op, rect);
     by_id_.erase(found);
 }
 

@@ -22,11 +22,12 @@ class OperatorSet {
     [[nodiscard]] const OperatorIndex& over_height() const { return height_; }
     [[nodiscard]] const OperatorIndex& over_index() const { return index_; }
     [[nodiscard]] const OperatorIndex& over_texture() const { return texture_; }
+    [[nodiscard]] const OperatorIndex& over_cutout() const { return cutout_; }
 
   private:
     std::unordered_map<uint64_t, std::unique_ptr<Operator>>
         by_id_;  // pointers stay valid while the map grows
-    OperatorIndex height_, index_, texture_;
+    OperatorIndex height_, index_, texture_, cutout_;
 };
 
 }  // namespace loam

@@ -12,13 +12,15 @@ constexpr uint32_t kReduction = 4;   // of the picture's width and height
 constexpr double kSplitShare = 0.5;  // a coarser cut, so that the picture's own ground stays resident
 }  // namespace
 
-void AnnouncedView::prepare(HeightMap& heights, glm::uvec2 picture_px, double split_distance) {
+void AnnouncedView::prepare(HeightMap& heights, const CutoutMap& cutouts, glm::uvec2 picture_px,
+                            double split_distance) {
     size = glm::max(picture_px / kReduction, glm::uvec2(8));
     footprint_log2 = float(std::log2(double(size.y) / picture_px.y));
     patches = select_patches(heights, {.camera_m = camera.position_m,
                                        .clip_from_rel = camera.clip_from_rel(size.x, size.y, {0, 0}),
                                        .split_distance = split_distance * kSplitShare,
-                                       .hidden_share = 0.0});
+                                       .hidden_share = 0.0,
+                                       .cutouts = &cutouts});
 }
 
 void cmd_prepass(gpu::Commands& commands, TerrainPass& terrain, FrameTargets& targets, HeightMap& heights,

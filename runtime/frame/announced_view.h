@@ -24,7 +24,7 @@ struct AnnouncedView {
     // Selects the ground and requests its height pages; before HeightMap::update. picture_px: of the picture
     // that is rendered now, as the first at the new place will be: one of another size has other sectors
     // live, and wants other pages.
-    void prepare(HeightMap& heights, glm::uvec2 picture_px, double split_distance);
+    void prepare(HeightMap& heights, const CutoutMap& cutouts, glm::uvec2 picture_px, double split_distance);
 };
 
 // Depth, stencil, geometric normal and footprint of a set of patches, into the targets.

@@ -33,7 +33,7 @@ namespace {
 struct ProfileDefaults {
     PageFormat page_format;
     int page_budget;
-    int height_pages, index_pages;  // composed a frame
+    int height_pages, index_pages, cutout_pages;  // composed a frame
     double split_distance;
     uint32_t shadow_texels;
     int shadow_budget;  // cascades drawn a frame
@@ -42,8 +42,8 @@ struct ProfileDefaults {
 
 ProfileDefaults profile_defaults(gpu::Profile profile) {
     if (profile == gpu::Profile::software)
-        return {PageFormat::rgba8, 2, 12, 2, 2.4, 1024, 1, Filter::bilinear, Filter::anisotropic_tiles};
-    return {PageFormat::bc1x3,           12, 48, 4, 4.0, 2048, 4, Filter::anisotropic_hardware,
+        return {PageFormat::rgba8, 2, 12, 2, 16, 2.4, 1024, 1, Filter::bilinear, Filter::anisotropic_tiles};
+    return {PageFormat::bc1x3,           12, 48, 4, 64, 4.0, 2048, 4, Filter::anisotropic_hardware,
             Filter::anisotropic_hardware};
 }
 
@@ -88,6 +88,7 @@ struct Renderer::Impl {
 
     std::unique_ptr<HeightMap> heights;
     std::unique_ptr<IndexMap> indices;
+    std::unique_ptr<CutoutMap> cutouts;
     std::unique_ptr<LayerSet> layers;
     TextureSwap textures;
     std::unique_ptr<TerrainPass> terrain;
@@ -155,6 +156,9 @@ Result<std::unique_ptr<Renderer>> Renderer::create(gpu::Device& device, gpu::Fra
     auto indices = IndexMap::create(&device, document, {.slot_count = desc.index_slots});
     if (!indices) return indices.error();
     r.indices = std::move(*indices);
+    auto cutouts = CutoutMap::create(&device, document);
+    if (!cutouts) return cutouts.error();
+    r.cutouts = std::move(*cutouts);
     LOAM_TRY(r.create_texture(ring));
     auto terrain =
         TerrainPass::create(device, {kGbufferFormat, kOcclusionFormat}, device.caps().depth_stencil);
@@ -358,6 +362,8 @@ void Renderer::on_dirt(const Dirt& dirt) {
     r.shadows->on_dirt(dirt.height, *r.heights);
     r.heights->on_dirt(dirt.height);
     r.indices->on_dirt(dirt.index);
+    r.cutouts->on_dirt(dirt.cutout);
+    r.cutouts->on_height_dirt(dirt.height);
     r.textures.on_dirt(dirt);
 }
 
@@ -421,6 +427,11 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
 
     shared::FrameUniforms u = r.uniforms(camera, size, settings);
 
+    // Holes first: they say which patches are drawn, and how.
+    std::vector<WorldRect> opened;
+    LOAM_TRY(r.cutouts->update(ring, commands, camera.position_m, r.defaults.cutout_pages, opened));
+    r.shadows->on_dirt(opened, *r.heights);
+
     // Pages: the cut of the height map, what it lacks, and what the texture needs of the index map.
     const double split =
         r.desc.patch_split_distance > 0 ? r.desc.patch_split_distance : r.defaults.split_distance;
@@ -428,12 +439,13 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
         select_patches(*r.heights, {.camera_m = camera.position_m,
                                     .clip_from_rel = camera.clip_from_rel(size.x, size.y, settings.jitter_px),
                                     .split_distance = split,
-                                    .hidden_share = kHiddenShare});
+                                    .hidden_share = kHiddenShare,
+                                    .cutouts = r.cutouts.get()});
     const double pixels_per_radian = size.y * 0.5 / std::tan(camera.fov_y_rad * 0.5);
     std::vector<SectorDistance> near =
         sector_distances(r.patches, *r.heights, r.texture().live_radius_m(pixels_per_radian, 0));
     if (r.announced) {
-        r.announced->prepare(*r.heights, size, split);
+        r.announced->prepare(*r.heights, *r.cutouts, size, split);
         const double there = size.y * 0.5 / std::tan(r.announced->camera.fov_y_rad * 0.5);
         std::vector<SectorDistance> far =
             sector_distances(r.announced->patches, *r.heights, r.texture().live_radius_m(there, 0));
@@ -499,7 +511,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
     const bool asked = settings.shading != Shading::virtual_texture ||
                        (r.texture().settled() && r.texture().last_feedback_frame() >= r.view_frame);
     r.settled = !r.changed && asked && !r.textures.pending() && !r.heights->has_work() &&
-                !r.indices->has_work() && (!r.desc.shadows || r.shadows->settled());
+                !r.cutouts->has_work() && !r.indices->has_work() && (!r.desc.shadows || r.shadows->settled());
     r.changed = false;
     return {};
 }
@@ -535,7 +547,7 @@ bool Renderer::settled() const {
 uint32_t Renderer::pending_pages() const {
     const auto t = impl_->texture().statistics();
     return t.missing_pages + t.dirty_pages + (impl_->heights->has_work() ? 1 : 0) +
-           (impl_->indices->has_work() ? 1 : 0);
+           (impl_->indices->has_work() ? 1 : 0) + (impl_->cutouts->has_work() ? 1 : 0);
 }
 
 double Renderer::height_m(double x_m, double y_m) {
@@ -547,8 +559,9 @@ glm::dvec3 Renderer::normal(double x_m, double y_m) {
 IndexTexel Renderer::layer_at(double x_m, double y_m) {
     return impl_->indices->texel_at(x_m, y_m);
 }
-std::optional<glm::dvec3> Renderer::ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m) {
-    return impl_->heights->ray_cast(origin_m, direction, max_m);
+std::optional<glm::dvec3> Renderer::ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m,
+                                             Holes holes) {
+    return impl_->heights->ray_cast(origin_m, direction, max_m, holes);
 }
 const LayerSet& Renderer::layers() const {
     return *impl_->layers;
@@ -569,9 +582,11 @@ FrameStatistics Renderer::statistics() const {
     s.height = r.heights->map().counters();
     s.index = r.indices->map().counters();
     s.layers = r.layers->statistics();
+    s.cutouts = r.cutouts->counts();
     s.memory = {{"height pages (GPU)", r.heights->gpu_bytes()},
                 {"height pages (CPU)", r.heights->cpu_bytes()},
                 {"index pages (GPU)", r.indices->gpu_bytes()},
+                {"cutout pages (GPU)", r.cutouts->gpu_bytes()},
                 {"virtual texture", s.texture.gpu_bytes},
                 {"layers", r.layers->gpu_bytes()},
                 {"shadow atlas", r.shadows->atlas().bytes()},
@@ -583,7 +598,8 @@ Result<uint32_t> Renderer::count_stale_pages(gpu::FrameRing& ring) {
     Impl& r = *impl_;
     auto stale = r.texture().count_stale_pages(ring);
     if (!stale) return stale.error();
-    return *stale + r.heights->count_stale_pages(r.document) + r.indices->count_stale_pages(r.document);
+    return *stale + r.heights->count_stale_pages(r.document) + r.indices->count_stale_pages(r.document) +
+           r.cutouts->count_stale_pages(r.document);
 }
 
 }  // namespace loam

@@ -23,6 +23,7 @@
 #include "runtime/frame/filter_tiles.h"
 #include "runtime/frame/frame_settings.h"
 #include "runtime/gpu/frame_ring.h"
+#include "runtime/maps/cutout_map.h"
 #include "runtime/texture/layer_set.h"
 #include "runtime/texture/virtual_texture.h"
 
@@ -61,6 +62,7 @@ struct FrameStatistics {
     VirtualTexture::Statistics texture;
     VirtualMap::Counters height, index;
     LayerSet::Statistics layers;
+    CutoutMap::Counts cutouts;
     std::vector<MemoryRow> memory;
     std::vector<gpu::PassTime> passes;  // of the newest finished frame
 };
@@ -103,7 +105,7 @@ class Renderer {
     [[nodiscard]] glm::dvec3 normal(double x_m, double y_m);
     [[nodiscard]] IndexTexel layer_at(double x_m, double y_m);
     [[nodiscard]] std::optional<glm::dvec3> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction,
-                                                     double max_m = 50'000);
+                                                     double max_m = 50'000, Holes holes = Holes::open);
 
     [[nodiscard]] FrameStatistics statistics() const;
     [[nodiscard]] const LayerSet& layers() const;

@@ -91,11 +91,20 @@ class Selection {
         const auto visible = [&](const MapPage& page) {
             return frustum_.meets(patch_box(heights_, page, view_.camera_m));
         };
+        const auto cover = [&](const MapPage& page) {
+            return view_.cutouts ? view_.cutouts->cover_of(page) : CutoutCover::ground;
+        };
+        const auto is_whole = [&](const MapPage& page) { return cover(page) == CutoutCover::ground; };
+        set.cutouts = view_.cutouts;
+        std::erase_if(leaves_, [&](const MapPage& page) { return cover(page) == CutoutCover::gone; });
         const auto hidden = std::stable_partition(leaves_.begin(), leaves_.end(), visible);
         set.visible_count = int(hidden - leaves_.begin());
+        set.visible_cut = int(hidden - std::stable_partition(leaves_.begin(), hidden, is_whole));
+        set.hidden_cut = int(leaves_.end() - std::stable_partition(hidden, leaves_.end(), is_whole));
         for (const MapPage& page : leaves_) set.patches.push_back(instance(page, set.origin_step));
-        for (const MapPage& page : leaves_)
-            set.cut_hash += MapPageHash{}(page)*0x9E3779B97F4A7C15ull;  // in any order
+        for (size_t i = 0; i < leaves_.size(); ++i)  // in any order
+            set.cut_hash +=
+                (MapPageHash{}(leaves_[i]) + (set.has_holes(uint32_t(i)) ? 1 : 0)) * 0x9E3779B97F4A7C15ull;
         set.pages = std::move(leaves_);
         return set;
     }

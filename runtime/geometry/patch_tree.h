@@ -11,6 +11,7 @@
 #include <glm/mat4x4.hpp>
 #include <glm/vec3.hpp>
 
+#include "runtime/maps/cutout_map.h"
 #include "runtime/maps/height_map.h"
 #include "shaders/geometry/geometry_io.h"
 
@@ -24,17 +25,24 @@ struct PatchView {
     // min_level: do not go finer than this. max_level: do not stay coarser than this where pages allow; 0: no
     // such limit.
     int max_level = 0, min_level = 0;
+    const CutoutMap* cutouts = nullptr;  // null: all ground is there
 };
 
 struct PatchSet {
     std::vector<shared::PatchInstance>
-        patches;  // all leaves; the first `visible_count` are inside the frustum
+        patches;  // leaves of which there is any ground; the first `visible_count` are inside the frustum
     int visible_count = 0;
+    int visible_cut = 0, hidden_cut = 0;  // with holes: the last so many inside, and outside, the frustum
+    const CutoutMap* cutouts = nullptr;   // of the view
     glm::ivec2 origin_step{0};     // the view's origin step
     glm::dvec2 origin_rel_m{0};    // its camera-relative place
     glm::dvec2 map_edge_rel_m{0};  // the map's north-east corner
     double step_m = 0;             // of the finest patch grid (4 height samples of level 0)
-    uint64_t cut_hash = 0;         // changes when the set of leaves changes
+    uint64_t cut_hash = 0;         // changes when the set of leaves or of those with holes changes
+    [[nodiscard]] bool has_holes(uint32_t patch) const {
+        const auto n = int(patch);
+        return n < visible_count ? n >= visible_count - visible_cut : n >= int(patches.size()) - hidden_cut;
+    }
     std::vector<MapPage> pages;    // of the patches, in their order
     glm::dvec3 camera_m{0};        // of the view
 };

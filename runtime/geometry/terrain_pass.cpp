@@ -2,6 +2,7 @@
 
 #include "runtime/base/check.h"
 
+#include <algorithm>
 #include <cstring>
 
 namespace loam {
@@ -34,6 +35,18 @@ gpu::GraphicsDesc patch_pipeline(const char* name, VkFormat depth_format) {
     return desc;
 }
 
+gpu::GraphicsDesc prepass_pipeline(const char* name, const char* fragment_shader,
+                                   const std::vector<VkFormat>& color_formats, VkFormat depth_stencil) {
+    gpu::GraphicsDesc desc = patch_pipeline(name, depth_stencil);
+    desc.fragment_shader = fragment_shader;
+    desc.bindings.push_back(gpu::sampled_image(2));
+    desc.color_formats = color_formats;
+    desc.stencil.enable = true;
+    desc.stencil.pass = VK_STENCIL_OP_REPLACE;
+    desc.stencil.reference = 1;
+    return desc;
+}
+
 }  // namespace
 
 Result<TerrainPass> TerrainPass::create(gpu::Device& device, const std::vector<VkFormat>& color_formats,
@@ -41,19 +54,16 @@ Result<TerrainPass> TerrainPass::create(gpu::Device& device, const std::vector<V
     static_assert(sizeof(shared::GeometryPush) <= 128);
     TerrainPass pass;
     pass.device_ = &device;
+    pass.color_formats_ = color_formats;
     pass.depth_stencil_ = depth_stencil;
-    gpu::GraphicsDesc desc = patch_pipeline("terrain prepass", depth_stencil);
-    desc.fragment_shader = "geometry/terrain_prepass.frag";
-    desc.bindings.push_back(gpu::sampled_image(2));
-    desc.color_formats = color_formats;
-    desc.stencil.enable = true;
-    desc.stencil.pass = VK_STENCIL_OP_REPLACE;
-    desc.stencil.reference = 1;
-    auto prepass = gpu::Pipeline::create(device, desc);
+    pass.shadow_depth_ = shadow_depth;
+    auto prepass = gpu::Pipeline::create(
+        device,
+        prepass_pipeline("terrain prepass", "geometry/terrain_prepass.frag", color_formats, depth_stencil));
     if (!prepass) return prepass.error();
     pass.prepass_ = std::move(*prepass);
 
-    desc = patch_pipeline("terrain shadow", shadow_depth);
+    gpu::GraphicsDesc desc = patch_pipeline("terrain shadow", shadow_depth);
     desc.depth_bias = true;
     auto shadow = gpu::Pipeline::create(device, desc);
     if (!shadow) return shadow.error();
@@ -81,9 +91,31 @@ Result<TerrainPass> TerrainPass::create(gpu::Device& device, const std::vector<V
     return pass;
 }
 
+Status TerrainPass::create_cut_pipelines() {
+    const auto with_cutouts = [](gpu::GraphicsDesc desc) {
+        desc.bindings.push_back(gpu::storage_buffer(3));
+        desc.bindings.push_back(gpu::storage_buffer(4));
+        return desc;
+    };
+    auto prepass = gpu::Pipeline::create(
+        *device_,
+        with_cutouts(prepass_pipeline("terrain prepass with holes", "geometry/terrain_prepass_cut.frag",
+                                      color_formats_, depth_stencil_)));
+    if (!prepass) return prepass.error();
+    gpu::GraphicsDesc desc = with_cutouts(patch_pipeline("terrain shadow with holes", shadow_depth_));
+    desc.fragment_shader = "geometry/terrain_shadow_cut.frag";
+    desc.depth_bias = true;
+    auto shadow = gpu::Pipeline::create(*device_, desc);
+    if (!shadow) return shadow.error();
+    prepass_cut_ = std::move(*prepass);
+    shadow_cut_ = std::move(*shadow);
+    return {};
+}
+
 Status TerrainPass::upload(gpu::FrameRing& ring, gpu::Commands&, const PatchSet& patches) {
     instances_ = {};
     if (patches.patches.empty()) return {};
+    if (!prepass_cut_ && patches.visible_cut + patches.hidden_cut > 0) LOAM_TRY(create_cut_pipelines());
     const uint64_t bytes = patches.patches.size() * sizeof(shared::PatchInstance);
     instances_ = ring.upload(bytes);
     if (!instances_.data) return error("no memory for {} terrain patches", patches.patches.size());
@@ -92,14 +124,19 @@ Status TerrainPass::upload(gpu::FrameRing& ring, gpu::Commands&, const PatchSet&
 }
 
 void TerrainPass::bind(gpu::Commands& commands, const gpu::Pipeline& pipeline, const PatchSet& patches,
-                       const HeightMap& heights, const glm::mat4& clip_from_rel, bool with_normals) {
-    const gpu::Bound instances(0, *instances_.buffer, instances_.offset,
-                               patches.patches.size() * sizeof(shared::PatchInstance));
-    const gpu::Bound height_array(1, heights.heights().view(), nearest_);
-    if (with_normals)
-        commands.bind(pipeline, {instances, height_array, {2, heights.normals().view(), linear_}});
-    else
-        commands.bind(pipeline, {instances, height_array});
+                       const HeightMap& heights, const glm::mat4& clip_from_rel) {
+    std::vector<gpu::Bound> bound;
+    const bool cuts = &pipeline == &prepass_cut_ || &pipeline == &shadow_cut_;
+    bound.emplace_back(0, *instances_.buffer, instances_.offset,
+                       patches.patches.size() * sizeof(shared::PatchInstance));
+    bound.emplace_back(1, heights.heights().view(), nearest_);
+    if (&pipeline != &shadow_ && &pipeline != &shadow_cut_)
+        bound.emplace_back(2, heights.normals().view(), linear_);
+    if (cuts) {
+        bound.emplace_back(3, patches.cutouts->table());
+        bound.emplace_back(4, patches.cutouts->pages());
+    }
+    commands.bind(pipeline, bound);
 
     shared::GeometryPush push{};
     push.clip_from_rel = clip_from_rel;
@@ -107,6 +144,7 @@ void TerrainPass::bind(gpu::Commands& commands, const gpu::Pipeline& pipeline, c
     push.step_m = static_cast<float>(patches.step_m);
     push.camera_z_m = static_cast<float>(patches.camera_m.z);
     push.map_edge_rel_m = glm::vec2(patches.map_edge_rel_m);
+    if (cuts) push.cutout = patches.cutouts->push(patches.camera_m);
     commands.push(pipeline, push);
     vkCmdBindIndexBuffer(commands.handle(), indices_.handle(), 0, VK_INDEX_TYPE_UINT16);
 }
@@ -115,8 +153,16 @@ void TerrainPass::cmd_draw_prepass(gpu::Commands& commands, const PatchSet& patc
                                    const glm::mat4& clip_from_rel, const glm::dvec3& camera_m) {
     LOAM_CHECK(camera_m == patches.camera_m, "patches were selected for another camera");
     if (!instances_.data || patches.visible_count == 0) return;
-    bind(commands, prepass_, patches, heights, clip_from_rel, true);
-    vkCmdDrawIndexed(commands.handle(), kIndexCount, uint32_t(patches.visible_count), 0, 0, 0);
+    const auto whole = uint32_t(patches.visible_count - patches.visible_cut),
+               cut = uint32_t(patches.visible_cut);
+    if (whole > 0) {
+        bind(commands, prepass_, patches, heights, clip_from_rel);
+        vkCmdDrawIndexed(commands.handle(), kIndexCount, whole, 0, 0, 0);
+    }
+    if (cut > 0) {
+        bind(commands, prepass_cut_, patches, heights, clip_from_rel);
+        vkCmdDrawIndexed(commands.handle(), kIndexCount, cut, 0, 0, whole);
+    }
 }
 
 Status TerrainPass::cmd_draw_levels(gpu::Commands& commands, const PatchSet& patches,
@@ -134,7 +180,7 @@ Status TerrainPass::cmd_draw_levels(gpu::Commands& commands, const PatchSet& pat
         levels_ = std::move(*made);
     }
     if (!instances_.data || patches.visible_count == 0) return {};
-    bind(commands, levels_, patches, heights, clip_from_rel, true);
+    bind(commands, levels_, patches, heights, clip_from_rel);
     vkCmdDrawIndexed(commands.handle(), kIndexCount, uint32_t(patches.visible_count), 0, 0, 0);
     return {};
 }
@@ -145,13 +191,18 @@ void TerrainPass::cmd_draw_shadow(gpu::Commands& commands, const PatchSet& patch
     LOAM_CHECK(camera_m == patches.camera_m, "patches were selected for another camera");
     const std::vector<uint32_t> seen = patches_in(patches, heights, seen_from_rel);
     if (!instances_.data || seen.empty()) return;
-    bind(commands, shadow_, patches, heights, glm::mat4(clip_from_rel), false);
-    vkCmdSetDepthBias(commands.handle(), bias.constant, 0.0f, bias.slope);
-    for (size_t begin = 0, end = 0; begin < seen.size();
-         begin = end) {  // a draw a run of neighbouring instances
-        for (end = begin + 1; end < seen.size() && seen[end] == seen[end - 1] + 1; ++end) {
+    for (const bool cut : {false, true}) {
+        const auto is_of_pass = [&](uint32_t patch) { return patches.has_holes(patch) == cut; };
+        if (std::none_of(seen.begin(), seen.end(), is_of_pass)) continue;
+        bind(commands, cut ? shadow_cut_ : shadow_, patches, heights, glm::mat4(clip_from_rel));
+        vkCmdSetDepthBias(commands.handle(), bias.constant, 0.0f, bias.slope);
+        for (size_t begin = 0, end = 0; begin < seen.size(); begin = end) {
+            end = begin + 1;
+            if (!is_of_pass(seen[begin])) continue;
+            // A draw a run of neighbouring instances.
+            while (end < seen.size() && seen[end] == seen[end - 1] + 1 && is_of_pass(seen[end])) ++end;
+            vkCmdDrawIndexed(commands.handle(), kIndexCount, uint32_t(end - begin), 0, 0, seen[begin]);
         }
-        vkCmdDrawIndexed(commands.handle(), kIndexCount, uint32_t(end - begin), 0, 0, seen[begin]);
     }
 }
 

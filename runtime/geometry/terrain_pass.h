@@ -33,7 +33,7 @@ class TerrainPass {
     static Result<TerrainPass> create(gpu::Device& device, const std::vector<VkFormat>& color_formats,
                                       VkFormat depth_stencil, VkFormat shadow_depth = VK_FORMAT_D32_SFLOAT);
 
-    // This frame's instances.
+    // This frame's instances; the first time that patches have holes, the pipelines for those.
     Status upload(gpu::FrameRing& ring, gpu::Commands& commands, const PatchSet& patches);
     // Inside begun rendering: the visible patches; depth GREATER, stencil replaced by 1. `camera_m` must be
     // that of the set.
@@ -50,12 +50,15 @@ class TerrainPass {
                          const glm::dvec3& camera_m, const DepthBias& bias = {});
 
   private:
+    Status create_cut_pipelines();
     void bind(gpu::Commands& commands, const gpu::Pipeline& pipeline, const PatchSet& patches,
-              const HeightMap& heights, const glm::mat4& clip_from_rel, bool with_normals);
+              const HeightMap& heights, const glm::mat4& clip_from_rel);
 
     gpu::Device* device_ = nullptr;
-    VkFormat depth_stencil_ = VK_FORMAT_UNDEFINED;
+    std::vector<VkFormat> color_formats_;
+    VkFormat depth_stencil_ = VK_FORMAT_UNDEFINED, shadow_depth_ = VK_FORMAT_UNDEFINED;
     gpu::Pipeline prepass_, shadow_, levels_;
+    gpu::Pipeline prepass_cut_, shadow_cut_;  // of patches with holes
     gpu::Sampler nearest_, linear_;
     gpu::Buffer indices_;
     gpu::UploadSlice instances_;

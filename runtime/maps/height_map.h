@@ -16,6 +16,7 @@
 #include "runtime/base/result.h"
 #include "runtime/gpu/frame_ring.h"
 #include "runtime/gpu/resources.h"
+#include "runtime/maps/cutout_map.h"
 #include "runtime/maps/virtual_map.h"
 
 namespace loam {
@@ -64,6 +65,7 @@ class HeightMap {
     [[nodiscard]] const HeightPage* resident_page(const MapPage& page) const;  // null: not resident
 
     // --- queries, at the finest level, whatever is resident; any thread but not during update or on_dirt ---
+    // Heights and normals in a hole are those of the ground that would be there.
     // What was composed before on_dirt is never used after it, so that a query right after an edit sees the
     // edit.
     [[nodiscard]] double height_m(
@@ -72,8 +74,10 @@ class HeightMap {
                                     double y_m);  // central differences at the finest spacing, bilinear
     // First hit of a ray with the surface of the finest level, within max_m; origin and direction in world
     // metres. The surface is that of height_m, over the map only; a ray from below the ground hits it from
-    // below. Nothing for a direction of no length and for anything not finite (max_m may be infinite).
-    [[nodiscard]] std::optional<glm::dvec3> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m);
+    // below, and goes through holes unless they count as closed. Nothing for a direction of no length and for
+    // anything not finite (max_m may be infinite).
+    [[nodiscard]] std::optional<glm::dvec3> ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m,
+                                                     Holes holes = Holes::open);
 
     // The composer, a pure function of the document: fills `rect` (texels with border) of `page`. Heights and
     // normals both.

@@ -216,7 +216,8 @@ glm::dvec3 HeightMap::normal(double x_m, double y_m) {
     return glm::normalize(glm::dvec3(-slope(1), -slope(kHeightTexels), 1.0));
 }
 
-std::optional<glm::dvec3> HeightMap::ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m) {
+std::optional<glm::dvec3> HeightMap::ray_cast(glm::dvec3 origin_m, glm::dvec3 direction, double max_m,
+                                              Holes holes) {
     const double length = glm::length(direction);
     if (!(length > 0) || !std::isfinite(length) || !std::isfinite(glm::dot(origin_m, origin_m)) ||
         !(max_m >= 0))
@@ -230,6 +231,10 @@ std::optional<glm::dvec3> HeightMap::ray_cast(glm::dvec3 origin_m, glm::dvec3 di
 
     const std::lock_guard lock(impl_->cache.mutex);
     std::optional<double> hit;
+    const auto is_open = [&](double t) {
+        return holes == Holes::open &&
+               CutoutMap::is_cut(impl_->document, origin_m.x + unit.x * t, origin_m.y + unit.y * t);
+    };
     const auto visit_page = [&](glm::ivec2 page_at, double from, double to) {
         const MapPage page{0, page_at.x, page_at.y};
         const HeightQueryCache::Bounds bounds =
@@ -252,8 +257,14 @@ std::optional<glm::dvec3> HeightMap::ray_cast(glm::dvec3 origin_m, glm::dvec3 di
             const double b = unit.z - du * d.x - dv * d.y - duv * (u * d.y + v * d.x);
             const double c = z - h00 - du * u - dv * v - duv * u * v;
             const auto root = first_root(a, b, c, tb - ta, 1e-9 * (1 + ta));
-            if (root) hit = ta + *root;
-            return root.has_value();
+            if (!root) return false;
+            hit = ta + *root;
+            if (!is_open(*hit)) return true;
+            // Through a hole; the same cell may be met once more, where the other root is.
+            const double other = a != 0 ? -(2 * a * *root + b) / a : -1;
+            hit = other > 0 && *root + other <= tb - ta ? std::optional(ta + *root + other) : std::nullopt;
+            if (hit && is_open(*hit)) hit.reset();
+            return hit.has_value();
         };
         const glm::ivec2 high = glm::min(first + kHeightPayload, cells);
         return walk_cells(o, d, from, to, first, high, visit_cell);

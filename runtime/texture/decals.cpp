@@ -181,6 +181,7 @@ struct PageDecals {
             paint_of(document, layers, tier, decal, origin(0));
     }
     void operator()(const Stamp&) const {}
+    void operator()(const Cutout&) const {}
     void operator()(const SplineDecal& spline) const {
         if (!shown(size_m(spline))) return;
         for (const SplinePiece& piece : spline.path->pieces()) {
@@ -251,6 +252,7 @@ struct PictureDecals {
                   bounds);
     }
     void operator()(const Stamp&) const {}
+    void operator()(const Cutout&) const {}
     void operator()(const SplineDecal& spline) const {
         for (const SplinePiece& piece : spline.path->pieces()) {
             const WorldRect bounds = piece.line.grown(spline.path->half_width_m());

@@ -7,6 +7,7 @@
 #ifndef LOAM_GEOMETRY_IO_H
 #define LOAM_GEOMETRY_IO_H
 #include "shaders/base/shared.h"
+#include "shaders/geometry/cutout_io.h"
 LOAM_BEGIN_SHARED
 
 #define kPatchQuads 8
@@ -29,6 +30,7 @@ struct GeometryPush {
     float camera_z_m;     // subtracted from heights
     uint first_instance;  // added to the instance index
     vec2 map_edge_rel_m;  // the map's north-east corner, camera-relative x, y
+    CutoutPush cutout;    // of patches with holes
 };
 
 LOAM_END_SHARED

@@ -78,6 +78,7 @@ struct World {
         index->on_dirt(dirt.index);
         if (!tell_texture) return;
         texture->on_index_dirt(dirt.index);
+        texture->on_height_dirt(dirt.height);  // volumes lie on the ground
         texture->on_dirt(dirt.texture, dirt.texture_size_m);
     }
     void run_frames(int count) {

@@ -1,4 +1,4 @@
-// Random decals, splines and volumes.
+// Random decals, splines and volumes, and cutouts.
 #pragma once
 
 #include <random>
@@ -54,6 +54,35 @@ inline OperatorShape random_decal(std::mt19937& random, glm::dvec2 at, double si
             return spline;
         }
     }
+}
+
+// Of any form, around a place; `ground_m`: about how high the ground is there.
+inline Cutout random_cutout(std::mt19937& random, glm::dvec2 at, double ground_m, double size_m) {
+    const auto real = [&](double low, double high) {
+        return std::uniform_real_distribution(low, high)(random);
+    };
+    Cutout c{.form = CutoutForm(random() % 4)};
+    c.fill = random() % 4 == 0;
+    c.center_m = {at, ground_m + real(-0.5, 0.5) * size_m};
+    c.half_m = {real(0.2, 1) * size_m, real(0.2, 1) * size_m, real(0.2, 1) * size_m};
+    c.direction = {real(-1, 1), real(-1, 1), real(-1, 1)};
+    c.roll_rad = real(-4, 4);
+    c.radius_m = real(0.2, 0.7) * size_m;
+    for (uint64_t i = 0, count = 1 + random() % 20; i < count; ++i)
+        c.dabs.push_back(at + glm::dvec2(real(-2, 2), real(-2, 2)) * size_m);
+    for (uint64_t i = 0, count = 4 + random() % 8; i < count; ++i)
+        c.corners.push_back(c.center_m + glm::dvec3(real(-1, 1), real(-1, 1), real(-1, 1)) * size_m);
+    // What its form has not is not written down.
+    if (c.form != CutoutForm::brush) c.dabs.clear(), c.radius_m = Cutout{}.radius_m;
+    if (c.form != CutoutForm::convex) c.corners.clear();
+    if (c.form == CutoutForm::brush || c.form == CutoutForm::convex) {
+        const Cutout none;
+        c.center_m = none.center_m;
+        c.half_m = none.half_m;
+        c.direction = none.direction;
+        c.roll_rad = none.roll_rad;
+    }
+    return c;
 }
 
 }  // namespace loam::test

@@ -170,7 +170,7 @@ TEST(document, dirt_covers_every_change_and_is_tight) {
     EXPECT_LT(area, 0.6 * 266 * 166);
 }
 
-// Journals were once written without the size of decals.
+// Journals were once written without the size of decals, and then without cutouts.
 TEST(document, dirt_of_an_older_journal_is_of_any_size) {
     Dirt dirt;
     dirt.texture = {{1, 2, 3, 4}};
@@ -180,7 +180,7 @@ TEST(document, dirt_of_an_older_journal_is_of_any_size) {
     ASSERT_TRUE(now.ok()) << now.message();
     EXPECT_EQ(now->texture_size_m, 0.25);
     EXPECT_EQ(now->texture, dirt.texture);
-    bytes.resize(bytes.size() - sizeof(double));
+    bytes.resize(bytes.size() - sizeof(uint32_t) - sizeof(double));  // how many cutouts, and the size
     auto older = dirt_of(bytes);
     ASSERT_TRUE(older.ok()) << older.message();
     EXPECT_EQ(older->texture, dirt.texture);

@@ -104,6 +104,9 @@ class MapFixture {
         crater.seed = uint32_t(random_());
         return apply(CraterCommand{crater});
     }
+    Dirt cutout() {
+        return apply(AddOperatorCommand{random_cutout(random_, place(), real(-20, 20), real(2, 30))});
+    }
     Dirt random_command() {
         const glm::dvec2 at = place();
         switch (uniform(0, 9)) {
@@ -153,6 +156,8 @@ class MapFixture {
                 if (uniform(0, 1)) return apply(ReorderCommand{id, uint64_t(uniform(0, 40))});
                 return apply(EditOperatorCommand{id, random_decal(random_, at, real(0.5, 20))});
             }
+            case 8:
+                return cutout();
             default:
                 break;
         }

@@ -164,6 +164,42 @@ TEST(Tools, ADecalTurnsTowardsTheDragAndTakesTheBrush) {
     EXPECT_TRUE(b.tools.outlines({}).empty());
 }
 
+TEST(Tools, ACutoutIsBrushedOrPlacedAndCtrlCloses) {
+    Bench b;
+    b.tools.tool = Tool::cutout;
+    b.tools.brush().radius_m = 4;
+    b.step(10, 10, true, false);
+    b.step(16, 10, false, false);
+    b.step(16, 10, false, false, 3.0);  // resting adds nothing
+    b.step(16, 10, false, true);
+    ASSERT_FALSE(b.all.empty());
+    size_t dabs = 0;
+    for (size_t i = 0; i < b.all.size(); ++i) {
+        const auto cutout = std::get<Cutout>(b.body<AddOperatorCommand>(i).shape);
+        EXPECT_EQ(cutout.form, CutoutForm::brush);
+        EXPECT_EQ(cutout.radius_m, 4);
+        EXPECT_FALSE(cutout.fill);
+        EXPECT_EQ(b.all[i].group, b.all[0].group);
+        dabs += cutout.dabs.size();
+    }
+    EXPECT_EQ(dabs, 7u) << "a quarter of the radius apart";
+
+    // A box turned as a decal is, closing.
+    b.all.clear();
+    b.tools.settings.cutout = {.form = CutoutForm::box, .stretch = 2, .depth_m = 3};
+    b.step(10, 10, true, false, 0.03, {.ctrl = true});
+    b.step(20, 10, false, false, 0.03, {.moved_px = 40});
+    EXPECT_EQ(b.tools.outlines({}).size(), 1u);
+    b.step(20, 10, false, true, 0.03, {.moved_px = 40});
+    ASSERT_EQ(b.all.size(), 1u);
+    const auto box = std::get<Cutout>(b.body<AddOperatorCommand>(0).shape);
+    EXPECT_TRUE(box.fill);
+    EXPECT_EQ(box.half_m, glm::dvec3(4, 8, 3));
+    EXPECT_TRUE(holds(box, box.center_m + glm::dvec3(7.9, 0, 2.9))) << "its length lies to the east";
+    EXPECT_FALSE(holds(box, box.center_m + glm::dvec3(0, 7.9, 0)));
+    EXPECT_TRUE(check_command(b.all[0]).ok());
+}
+
 TEST(Tools, ARoadGoesFromClickToClickUntilItsLastPlaceIsClickedAgain) {
     Bench b;
     b.tools.tool = Tool::road;

@@ -366,6 +366,37 @@ def test_the_map_is_edited_while_a_layer_is_added(display, project, opened, tmp_
     assert 'name = "late"' not in text.read_text() and sorted((project / "layers").iterdir()) == files
 
 
+def test_a_hole_is_cut_closed_and_undone(display, project, opened):
+    window = opened()
+    away(display, window)
+    start = display.screenshot()
+    spot = place(window, 0.5, 0.7)
+    display.key("c")
+    display.drag(*spot, spot[0] + 50, spot[1])
+    window.wait_for("command")
+    away(display, window)
+    cut = display.screenshot()
+    keep("cutout.png", cut)
+    assert changed_share(start, cut, spot) > 0.9
+    commands = window.commands()
+    assert {c["cmd"] for c in commands} == {"cutout"} and len({c["group"] for c in commands}) == 1
+    # The same with Ctrl: the ground is under the cursor although it is not there.
+    display.xdotool("keydown", "ctrl")
+    display.drag(*spot, spot[0] + 50, spot[1])
+    display.xdotool("keyup", "ctrl")
+    window.wait_for("command")
+    away(display, window)
+    assert window.commands()[-1]["fill"] is True
+    assert changed_share(start, display.screenshot(), spot) < 0.02
+    display.key("ctrl+z")
+    away(display, window)
+    assert changed_share(cut, display.screenshot(), spot) < 0.02
+    display.key("ctrl+z")
+    away(display, window)
+    assert changed_share(start, display.screenshot(), spot) < 0.02
+    closed_cleanly(window, display)
+
+
 def test_the_map_is_filled_and_taken_back(display, project, opened):
     window = opened()
     away(display, window)
