@@ -21,12 +21,19 @@ VolumeAxes axes(const Cutout& cutout) {
 
 }  // namespace
 
+WorldRect disc_rect(const Cutout& cutout, const glm::dvec2& dab) {
+    return WorldRect{dab.x, dab.y, dab.x, dab.y}.grown(cutout.radius_m + kHair_m);
+}
+
+bool disc_holds(const Cutout& cutout, const glm::dvec2& dab, const glm::dvec3& place_m) {
+    return glm::distance(dab, glm::dvec2(place_m)) <= cutout.radius_m + kHair_m;
+}
+
 std::vector<WorldRect> rects_of(const Cutout& cutout) {
     std::vector<WorldRect> rects;
     if (cutout.form == CutoutForm::brush) {
         for (size_t i = 0; i < cutout.dabs.size(); ++i) {
-            const glm::dvec2 d = cutout.dabs[i];
-            const WorldRect disc = WorldRect{d.x, d.y, d.x, d.y}.grown(cutout.radius_m);
+            const WorldRect disc = disc_rect(cutout, cutout.dabs[i]);
             if (i % kDabsARect == 0)
                 rects.push_back(disc);
             else
@@ -50,9 +57,8 @@ std::vector<WorldRect> rects_of(const Cutout& cutout) {
 bool holds(const Cutout& cutout, const glm::dvec3& place_m) {
     switch (cutout.form) {
         case CutoutForm::brush:
-            return std::any_of(cutout.dabs.begin(), cutout.dabs.end(), [&](const glm::dvec2& dab) {
-                return glm::distance(dab, glm::dvec2(place_m)) <= cutout.radius_m + kHair_m;
-            });
+            return std::any_of(cutout.dabs.begin(), cutout.dabs.end(),
+                               [&](const glm::dvec2& dab) { return disc_holds(cutout, dab, place_m); });
         case CutoutForm::convex:
             LOAM_CHECK(cutout.planes, "an operator of a document has been prepared");
             return std::all_of(cutout.planes->begin(), cutout.planes->end(), [&](const glm::dvec4& plane) {

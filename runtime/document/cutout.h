@@ -51,6 +51,9 @@ inline constexpr size_t kMaxCutoutCorners = 32;
 [[nodiscard]] std::vector<WorldRect> rects_of(const Cutout& cutout);
 // Whether a place of the ground lies in it, its surface included.
 [[nodiscard]] bool holds(const Cutout& cutout, const glm::dvec3& place_m);
+// Of a brush's one dab.
+[[nodiscard]] WorldRect disc_rect(const Cutout& cutout, const glm::dvec2& dab);
+[[nodiscard]] bool disc_holds(const Cutout& cutout, const glm::dvec2& dab, const glm::dvec3& place_m);
 // Of the hull of a convex one's corners; an error where they span no volume.
 [[nodiscard]] Result<std::vector<glm::dvec4>> hull_planes(const std::vector<glm::dvec3>& corners);
 

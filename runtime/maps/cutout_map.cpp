@@ -34,6 +34,18 @@ struct Grid {
     glm::ivec2 last;
 };
 
+struct VertexRange {
+    glm::ivec2 low, high;  // half open, within the window
+};
+VertexRange vertices_in(const Grid& grid, const WorldRect& rect, glm::ivec2 first, glm::ivec2 size) {
+    const auto index = [&](double metres, double low, int count) {
+        return int(std::clamp(metres / grid.spacing_m - low, 0.0, double(count)));
+    };
+    // A vertex too many on either side is asked and says no.
+    return {{index(rect.min_x, first.x, size.x), index(rect.min_y, first.y, size.y)},
+            {index(rect.max_x, first.x - 2, size.x), index(rect.max_y, first.y - 2, size.y)}};
+}
+
 // 1 where a vertex is cut, row by row from first. False: none is. The caller
 // holds the ReadLock.
 bool cut_vertices(const Document& document, const Grid& grid, glm::ivec2 first, glm::ivec2 size,
@@ -47,23 +59,27 @@ bool cut_vertices(const Document& document, const Grid& grid, glm::ivec2 first, 
     if (std::any_of(operators.begin(), operators.end(),
                     [](const Operator* op) { return looks_at_heights(std::get<Cutout>(op->shape)); }))
         compose_heights(document, grid.level, first, size, heights_m.data());
-    bool any = false;
     for (const Operator* op : operators) {
         const Cutout& cutout = std::get<Cutout>(op->shape);
-        std::vector<WorldRect> rects = rects_of(cutout);
-        for (int j = 0; j < size.y; ++j)
-            for (int i = 0; i < size.x; ++i) {
-                const size_t at = size_t(j) * size_t(size.x) + size_t(i);
-                const glm::dvec2 place = glm::dvec2(first + glm::ivec2(i, j)) * grid.spacing_m;
-                if (out[at] == uint8_t(!cutout.fill)) continue;
-                if (std::none_of(rects.begin(), rects.end(),
-                                 [&](const WorldRect& r) { return r.contains(place.x, place.y); }))
-                    continue;
-                if (holds(cutout, glm::dvec3(place, heights_m[at]))) out[at] = !cutout.fill;
-            }
+        const auto visit = [&](const WorldRect& rect, auto&& is_in) {
+            const VertexRange range = vertices_in(grid, rect, first, size);
+            for (int j = range.low.y; j < range.high.y; ++j)
+                for (int i = range.low.x; i < range.high.x; ++i) {
+                    const size_t at = size_t(j) * size_t(size.x) + size_t(i);
+                    const glm::dvec2 place = glm::dvec2(first + glm::ivec2(i, j)) * grid.spacing_m;
+                    if (is_in(glm::dvec3(place, heights_m[at]))) out[at] = !cutout.fill;
+                }
+        };
+        if (cutout.form != CutoutForm::brush) {
+            for (const WorldRect& rect : rects_of(cutout))
+                visit(rect, [&](const glm::dvec3& place) { return holds(cutout, place); });
+            continue;
+        }
+        for (const glm::dvec2& dab : cutout.dabs)  // of a long stroke few are near
+            visit(disc_rect(cutout, dab),
+                  [&](const glm::dvec3& place) { return disc_holds(cutout, dab, place); });
     }
-    for (size_t i = 0; i < size_t(size.x) * size_t(size.y); ++i) any = any || out[i];
-    return any;
+    return std::any_of(out, out + size_t(size.x) * size_t(size.y), [](uint8_t cut) { return cut != 0; });
 }
 
 // Of the squares between a page's vertices 0 … 64.
@@ -179,7 +195,7 @@ void CutoutMap::Impl::take_stale(const glm::dvec3& camera_m, int new_pages, std:
 void CutoutMap::Impl::give_places(const glm::dvec3& camera_m, std::vector<WorldRect>& changed) {
     const double moved_m = glm::distance(ranked_from_m, glm::dvec2(camera_m));
     const bool crowded = mixed > kMaxCutoutPages;
-    if (!places_stale && !(crowded && moved_m > 0.5 * kCutoutPayload * grid.spacing_m)) return;
+    if (!places_stale && !(crowded && moved_m > 0)) return;
     places_stale = false;
     ranked_from_m = glm::dvec2(camera_m);
     std::vector<uint32_t> wanted;
