@@ -36,7 +36,7 @@ struct Picture {
 // What the ground pass wrote, for tests; row 0 is the top.
 struct GroundBuffers {
     int width = 0, height = 0;
-    std::vector<uint16_t> gbuffer;  // four halves a pixel, shaders/geometry/terrain_prepass.frag
+    std::vector<uint16_t> gbuffer;  // four halves a pixel, shaders/geometry/gbuffer.glsl
     std::vector<float> depth;       // reversed Z, 0 where there is no ground
 };
 

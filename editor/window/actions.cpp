@@ -52,6 +52,7 @@ constexpr Bound kBound[] = {
     {"add stamp", Key::t, kCtrl},
     {"add imagery", Key::i, kCtrl},
     {"quit", Key::q, kCtrl},
+    {"remove object", Key::del, {}},
     {"frame", Key::f, {}},
     {"home", Key::home, {}},
     {"shortcuts", Key::f1, {}},
@@ -120,6 +121,10 @@ void App::run(std::string_view action, ui::Ui& ui) {
     if (action == "quit") {
         quit = true;
         return;
+    }
+    if (action == "remove object") {
+        if (!selected_row()) return say("Choose an object in the list of objects first");
+        return remove_object(selected_object);
     }
     if (action == "frame") {
         if (!cursor_) return say("Point at the ground to frame a spot");

@@ -15,13 +15,6 @@ namespace {
 constexpr int kHistoryLength = 400; // commands looked at
 constexpr int kMostSteps = 60;      // shown
 
-std::string_view kind_title(const OperatorShape& shape) {
-    constexpr std::string_view names[] = {"Crater",       "Footprint", "Decal", "Road",
-                                          "Volume decal", "Stamp",     "Cutout"};
-    static_assert(std::size(names) == std::variant_size_v<OperatorShape>);
-    return names[shape.index()];
-}
-
 struct Titles {
     std::string operator()(const SculptCommand& c) const {
         constexpr std::string_view names[] = {"Raise", "Lower", "Smooth", "Flatten"};
@@ -49,6 +42,13 @@ struct Titles {
 };
 
 } // namespace
+
+std::string_view kind_title(const OperatorShape& shape) {
+    constexpr std::string_view names[] = {"Crater",       "Footprint", "Decal", "Road",
+                                          "Volume decal", "Stamp",     "Cutout"};
+    static_assert(std::size(names) == std::variant_size_v<OperatorShape>);
+    return names[shape.index()];
+}
 
 std::string command_title(std::string_view json) {
     const auto command = parse_command(json);

@@ -49,6 +49,13 @@ struct HistoryStep { // commands of one group
     bool applied = true;
 };
 
+struct ObjectRow {  // of the outliner
+    uint64_t id = 0, order = 0;
+    std::string title;  // "Stamp 12 · ridge"
+    bool enabled = true;
+    WorldRect bounds;  // of all that it changes
+};
+
 // Asked for by actions, done by the window's loop between two frames.
 struct Wish {
     enum class Kind { none, open_project, export_picture };
@@ -79,6 +86,8 @@ class App {
     uint64_t transition_group = 0;  // of a slider that is being dragged
     std::string layer_search;    // of the palette
     std::string new_stamp_name;  // likewise; empty: the file's
+    std::string object_search;   // of the outliner
+    uint64_t selected_object = 0;  // an operator's id; 0, or one that is gone: none
     bool quit = false;
 
     // --- edits ---
@@ -115,6 +124,14 @@ class App {
     [[nodiscard]] const std::vector<HistoryStep>& history(); // oldest first
     [[nodiscard]] std::string layer_name_at(double x_m, double y_m);
     [[nodiscard]] double height_at(double x_m, double y_m);
+
+    // --- the outliner (outliner.cpp) ---
+    [[nodiscard]] const std::vector<ObjectRow>& objects();  // last evaluated first
+    [[nodiscard]] const ObjectRow* selected_row();          // null: none
+    void show_object(uint64_t id, bool shown);
+    void remove_object(uint64_t id);
+    void move_object(uint64_t id, bool later);  // past its neighbour in the order of evaluation
+    void frame_object();                        // the selected one
 
     // --- actions: menu entries, shortcuts and buttons ---
     void run(std::string_view action, ui::Ui& ui);
@@ -160,6 +177,8 @@ class App {
     std::vector<std::string> errors_;
     std::vector<HistoryStep> history_;
     uint64_t history_revision_ = ~uint64_t{0};
+    std::vector<ObjectRow> objects_;
+    uint64_t objects_revision_ = ~uint64_t{0};
     void read_layer_names();
 
     bool scene_changed_ = true, settings_changed_ = false, quality_changed_ = false;
@@ -175,6 +194,8 @@ class App {
     double cursor_yaw_ = 0, cursor_pitch_ = 0;
 };
 
+// "Crater", "Road".
+[[nodiscard]] std::string_view kind_title(const OperatorShape& shape);
 // "Raise · 24", from a command's JSON line.
 [[nodiscard]] std::string command_title(std::string_view json);
 

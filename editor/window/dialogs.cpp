@@ -19,6 +19,7 @@ constexpr std::string_view kHelp[][2] = {
     {", and .", "previous and next layer"},
     {"F, Home", "frame the spot under the cursor, the whole map"},
     {"Ctrl+F", "fill the map as the paint tool is set"},
+    {"Delete", "remove the object chosen in the list"},
     {"Ctrl+Z, Ctrl+Y", "undo, redo"},
     {"Ctrl+L", "add a layer from a folder of maps"},
     {"G, F3", "stay above the ground, direct shading"},

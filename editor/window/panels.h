@@ -13,6 +13,7 @@ void build_properties(App& app, ui::Ui& ui); // the right panel: tool, layers, s
 void transition_properties(App& app, ui::Ui& ui); // sections of it
 void ground_properties(App& app, ui::Ui& ui);
 void imagery_properties(App& app, ui::Ui& ui);
+void object_properties(App& app, ui::Ui& ui);  // the outliner
 void build_status_line(App& app, ui::Ui& ui);
 void build_shader_errors(App& app, ui::Ui& ui); // only while there are some
 void build_dialogs(App& app, ui::Ui& ui);

@@ -348,6 +348,7 @@ void build_properties(App& app, ui::Ui& ui) {
     if (auto section = ui::section(ui, "Ground")) ground_properties(app, ui);
     if (auto section = ui::section(ui, "Imagery", ui::Section::closed)) imagery_properties(app, ui);
     if (auto section = ui::section(ui, "Sun")) sun_properties(app, ui);
+    if (auto section = ui::section(ui, "Objects", ui::Section::closed)) object_properties(app, ui);
     if (auto section = ui::section(ui, "History")) history_list(app, ui);
 }
 

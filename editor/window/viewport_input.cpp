@@ -51,6 +51,25 @@ CameraInput App::camera_input(ui::Ui& ui, const ui::ViewportResponse& response, 
     return input;
 }
 
+namespace {
+
+// So that it follows the ground.
+ToolController::Outline outline_of(const WorldRect& rect) {
+    constexpr int kSteps = 8;  // a side
+    const glm::dvec2 corners[] = {{rect.min_x, rect.min_y},
+                                  {rect.max_x, rect.min_y},
+                                  {rect.max_x, rect.max_y},
+                                  {rect.min_x, rect.max_y},
+                                  {rect.min_x, rect.min_y}};
+    ToolController::Outline outline{.places_m = {}, .closed = true};
+    for (int side = 0; side < 4; ++side)
+        for (int i = 0; i < kSteps; ++i)
+            outline.places_m.push_back(glm::mix(corners[side], corners[side + 1], double(i) / kSteps));
+    return outline;
+}
+
+}  // namespace
+
 void App::find_cursor_ground(const ui::ViewportResponse& response) {
     const Camera& eye = camera.camera();
     if ((!response.hovered && !response.held && !response.released) || flying()) {
@@ -106,6 +125,8 @@ void App::viewport_input(ui::Ui& ui, const ui::ViewportResponse& response, doubl
     if (response.released) tool_drag_ = false;
     ring_ = drag_ == CameraInput::Drag::none ? tools.ring(input) : std::nullopt;
     outlines_ = tools.outlines(input);
+    if (const ObjectRow* selected = selected_object != 0 ? selected_row() : nullptr)
+        outlines_.push_back(outline_of(selected->bounds));
     if (response.hovered && !flying()) ui.set_cursor(ui::Cursor::crosshair);
 }
 

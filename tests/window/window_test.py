@@ -397,6 +397,42 @@ def test_a_hole_is_cut_closed_and_undone(display, project, opened):
     closed_cleanly(window, display)
 
 
+def test_objects_are_listed_hidden_and_removed(display, project, opened):
+    window = opened()
+    away(display, window)
+    start = display.screenshot()
+    spot, other = place(window, 0.35, 0.75), place(window, 0.65, 0.75)
+    display.key("6")
+    display.click(*spot)
+    window.wait_for("command")
+    display.key("c")
+    display.click(*other)
+    window.wait_for("command")
+    away(display, window)
+    made = display.screenshot()
+    display.key("1")
+    for heading in (178, 274, 338, 370):  # Layers, Ground and Sun close, Objects opens
+        display.click(1140, heading)
+        window.settle()
+    display.click(1140, 430)  # the newest on top: the cutout
+    window.settle()
+    keep("objects.png", display.screenshot())
+    display.key("Delete")
+    away(display, window)
+    removed = display.screenshot()
+    assert window.commands()[-1]["cmd"] == "remove"
+    assert changed_share(start, removed, other) < 0.02 and changed_share(made, removed, spot) < 0.02
+    display.click(1033, 430)  # the eye of the crater, the only one now
+    away(display, window)
+    assert window.commands()[-1] == {"cmd": "operator", "id": 1, "enabled": False}
+    assert changed_share(start, display.screenshot(), spot) < 0.02
+    display.key("ctrl+z", "ctrl+z")
+    away(display, window)
+    assert changed_share(made, display.screenshot(), spot) < 0.02
+    assert changed_share(made, display.screenshot(), other) < 0.02
+    closed_cleanly(window, display)
+
+
 def test_the_map_is_filled_and_taken_back(display, project, opened):
     window = opened()
     away(display, window)
