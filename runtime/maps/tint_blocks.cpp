@@ -2,10 +2,38 @@
 
 #include <cmath>
 
+#include <glm/geometric.hpp>
+
 #include "runtime/base/check.h"
 #include "shaders/texture/bc1.h"
 
 namespace loam {
+
+namespace {
+
+constexpr int kBlockTexels = kTintBlockTexels * kTintBlockTexels;
+
+// bc1_encode with one start and one refinement: tints vary little, and pages of them are made in frames.
+glm::uvec2 encode(const glm::vec3 (&tints)[kBlockTexels]) {
+    const glm::vec3 even(1);
+    glm::vec3 sum(0);
+    for (const glm::vec3& tint : tints) sum += tint;
+    const glm::vec3 mean = sum / float(kBlockTexels), axis = shared::bc1_axis(tints, mean, even);
+    float nearest = INFINITY, farthest = -INFINITY;
+    glm::vec3 ends[2] = {mean, mean};
+    for (const glm::vec3& tint : tints) {
+        const float along = glm::dot(tint - mean, axis);
+        if (along < nearest) nearest = along, ends[0] = tint;
+        if (along > farthest) farthest = along, ends[1] = tint;
+    }
+    const shared::Bc1Try first =
+        shared::bc1_try(tints, shared::bc1_pack565(ends[0]), shared::bc1_pack565(ends[1]), even);
+    const shared::Bc1Try best =
+        shared::bc1_better(shared::bc1_flat(tints, mean, even), shared::bc1_refine(tints, first, sum, even));
+    return shared::bc1_finish(shared::bc1_better(best, first));
+}
+
+}  // namespace
 
 TexelRect tint_blocks_of(const TexelRect& texels) {
     if (texels.empty()) return {};
@@ -51,7 +79,7 @@ void encode_tint_blocks(std::span<const IndexTexel> texels, int side_texels, con
                 block = flat_block;
                 continue;
             }
-            block = shared::bc1_encode(tints, glm::vec3(1));
+            block = encode(tints);
             if (flat) {
                 flat_key = first;
                 flat_block = block;
