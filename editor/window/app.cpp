@@ -214,6 +214,7 @@ void App::read_layer_names() {
 void App::set_tool(Tool tool) {
     if (tools.stroking()) return;
     tools.tool = tool;
+    cursor_revision_ = ~uint64_t{0};  // not every tool sees holes
     // Others may have added some since.
     if (tool == Tool::stamp) stamp_names = session.document().stamps();
     say(tool == Tool::stamp && stamp_names.empty()

@@ -118,7 +118,7 @@ void App::frame_object() {
 }
 
 void object_properties(App& app, ui::Ui& ui) {
-    const std::vector<ObjectRow> rows = app.objects();  // by value: a press changes it
+    const std::vector<ObjectRow>& rows = app.objects();  // another one after selected_row() below
     if (rows.empty()) return ui::label(ui, "No craters, decals, roads or cutouts yet", ui::Tone::dim);
     ui::text_field(ui, "##objects", app.object_search,
                    {.placeholder = fmt::format("Search {} objects", rows.size()), .icon = ui::Icon::search});

@@ -1,8 +1,11 @@
 // A plain composer written from the talk's description, in doubles, with loops and a sort, sharing nothing
-// with the shaders but the hash that says which section turns how. Source: Call of Duty talk, "One Material
+// with the shaders but the hash that says which section turns how; tints are those that the map's blocks
+// show (maps/tint_blocks.h). Source: Call of Duty talk, "One Material
 // Per Vertex", "Distortion", "Tile Hiding": the four index texels around a texel weigh bilinearly, equal
 // layers (with tile hiding: of one section) are merged, alpha is doubled and clamped, layers are sorted, the
 // lowest is opaque, reveal cuts the edge.
+//
+// Longer than 200 lines because it is one composer, to be read beside the talk from top to bottom.
 #pragma once
 
 #include <algorithm>

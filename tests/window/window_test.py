@@ -380,7 +380,20 @@ def test_a_hole_is_cut_closed_and_undone(display, project, opened):
     assert changed_share(start, cut, spot) > 0.9
     commands = window.commands()
     assert {c["cmd"] for c in commands} == {"cutout"} and len({c["group"] for c in commands}) == 1
-    # The same with Ctrl: the ground is under the cursor although it is not there.
+    # Taking up the tool over the hole, the mouse at rest: Ctrl closes a spot of it, although nothing is there.
+    display.key("1")
+    display.xdotool("mousemove", *spot)
+    window.settle()
+    display.key("c")
+    display.xdotool("keydown", "ctrl")
+    display.xdotool("click", 1)
+    display.xdotool("keyup", "ctrl")
+    window.wait_for("command")
+    assert window.commands()[-1]["fill"] is True
+    display.key("ctrl+z")
+    away(display, window)
+    assert changed_share(cut, display.screenshot(), spot) < 0.02
+    # The same along the stroke.
     display.xdotool("keydown", "ctrl")
     display.drag(*spot, spot[0] + 50, spot[1])
     display.xdotool("keyup", "ctrl")
