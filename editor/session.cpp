@@ -50,6 +50,9 @@ struct Session::Recorder {
 
 Session::Session() = default;
 Session::~Session() {
+    if (prints_)
+        if (const auto laid = prints_->flush(); !laid)
+            log(LogLevel::warning, "the last prints were not laid: {}", laid.message());
     if (device_) device_->wait_idle();
 }
 
@@ -60,6 +63,7 @@ Result<std::unique_ptr<Session>> Session::open(const std::filesystem::path& proj
     std::unique_ptr<Session> session(new Session());
     session->desc_ = desc;
     session->document_ = std::move(*document);
+    session->prints_ = std::make_unique<Prints>(*session);
     return session;
 }
 
@@ -106,6 +110,14 @@ FrameSettings reference_frame(FrameSettings frame) {
 // --- edits ---
 
 Result<Dirt> Session::apply(const Command& command) {
+    // What was stepped on before is of the time that was.
+    if (std::holds_alternative<TimeCommand>(command.body) && prints_->waiting() > 0) {
+        auto printed = prints_->flush();
+        if (!printed) return printed;
+        auto dirt = apply_one(command);
+        if (dirt) append_dirt(*dirt, *printed);
+        return dirt;
+    }
     const auto* large = std::get_if<FillCommand>(&command.body);
     if (!large || document_->fill_texels(*large).area() <= kLargestFill) return apply_one(command);
     LOAM_TRY(check_command(command));
@@ -238,6 +250,7 @@ Result<Picture> Session::supersampled(Renderer& renderer, const RenderRequest& r
 }
 
 Result<Picture> Session::render(const RenderRequest& request) {
+    if (auto laid = prints_->flush(); !laid) return laid.error();
     if (!request.reference) {
         auto renderer = this->renderer();
         if (!renderer) return renderer.error();
@@ -253,6 +266,7 @@ Result<Picture> Session::render(const RenderRequest& request) {
 }
 
 Status Session::step(const Camera& camera, int width, int height, const FrameSettings& settings, int frames) {
+    if (auto laid = prints_->flush(); !laid) return laid.error();
     auto renderer = this->renderer();
     if (!renderer) return renderer.error();
     for (int i = 0; i < frames; ++i)

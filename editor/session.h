@@ -10,6 +10,7 @@
 
 #include "editor/imagery_import.h"
 #include "editor/layer_import.h"
+#include "editor/prints.h"
 #include "editor/weights_import.h"
 #include "runtime/base/result.h"
 #include "runtime/document/document.h"
@@ -65,6 +66,8 @@ class Session {
     ~Session();
 
     Document& document() { return *document_; }
+    // Feet and wheels of actors; laid with the next picture.
+    Prints& prints() { return *prints_; }
     // The device and renderer are made at the first use: edits and queries of a script that renders nothing
     // need no GPU.
     Result<Renderer*> renderer();
@@ -130,6 +133,7 @@ class Session {
     struct Recorder;
     SessionDesc desc_;
     std::unique_ptr<Document> document_;
+    std::unique_ptr<Prints> prints_;
     std::unique_ptr<gpu::Device> device_;
     std::unique_ptr<gpu::FrameRing> ring_;
     std::unique_ptr<Renderer> renderer_;

@@ -49,9 +49,10 @@ Status set_of_layer(ProjectSettings& settings, std::string_view name, std::strin
         if (entry.name != layer) continue;
         if (entry.blend) return error("\"{}\" is a transition: loam transition changes it", layer);
         if (key == "tile_m") return set_number(entry.tile_m, name, value);
+        if (key == "softness") return set_number(entry.softness, name, value);
         for (size_t c = 0; c < kChannelNames.size(); ++c)
             if (key == kChannelNames[c]) return set_number(entry.channels[c], name, value);
-        return error("a layer has no setting \"{}\" (known: tile_m, {})", key,
+        return error("a layer has no setting \"{}\" (known: tile_m, softness, {})", key,
                      fmt::join(kChannelNames, ", "));
     }
     return error("the project has no layer \"{}\"", layer);
@@ -72,6 +73,7 @@ std::vector<NamedSetting> named_settings(const ProjectSettings& settings) {
             list.push_back({fmt::format("{}{}.{}", kLayer, layer.name, key), fmt::format("{}", value)});
         };
         add("tile_m", layer.tile_m);
+        add("softness", layer.softness);
         for (const Channel channel : settings.channels)
             add(kChannelNames[size_t(channel)], layer.channels[size_t(channel)]);
     }

@@ -56,6 +56,10 @@ std::string_view program(Icon icon) {
                    "16.5 13.5 M 11.6 8 C 10 5.2 3.2 -60 240";
         case Icon::cutout:
             return "M 1.5 6.5 L 6.5 6.5 6.5 15.5 13.5 15.5 13.5 6.5 18.5 6.5";
+        case Icon::event:
+            return "M 10 1.8 L 10 5.5 M 10 14.5 L 10 18.2 M 1.8 10 L 5.5 10 M 14.5 10 L 18.2 10 M 4.2 4.2 L "
+                   "6.6 6.6 "
+                   "M 13.4 13.4 L 15.8 15.8 M 15.8 4.2 L 13.4 6.6 M 6.6 13.4 L 4.2 15.8 D 10 10 2.4";
         case Icon::undo:
             return "M 6.5 3.5 L 3 7 6.5 10.5 M 3 7 L 12 7 C 12 11.5 4.5 -90 90 M 12 16 L 7 16";
         case Icon::redo:
@@ -86,6 +90,8 @@ std::string_view program(Icon icon) {
             return "M 6 3.8 L 16 10 6 16.2 6 3.8";
         case Icon::stop:
             return "M 5.5 5.5 L 14.5 5.5 14.5 14.5 5.5 14.5 5.5 5.5";
+        case Icon::to_start:
+            return "M 15.5 4 L 7 10 15.5 16 15.5 4 M 4.5 4 L 4.5 16";
         case Icon::plus:
             return "M 10 4 L 10 16 M 4 10 L 16 10";
         case Icon::minus:

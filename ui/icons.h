@@ -9,8 +9,8 @@ namespace loam::ui {
 
 // clang-format off
 enum class Icon : uint8_t {
-    none, raise, lower, smooth, flatten, noise, paint, crater, footprints, decal, road, stamp, cutout, undo, redo, save, open, camera, layers, eye,
-    eye_off, search, settings, play, stop, plus, minus, trash, check, cross, chevron_right, chevron_down, sun, info,
+    none, raise, lower, smooth, flatten, noise, paint, crater, footprints, decal, road, stamp, cutout, event, undo, redo, save, open, camera, layers, eye,
+    eye_off, search, settings, play, stop, to_start, plus, minus, trash, check, cross, chevron_right, chevron_down, sun, info,
     warning, grid, count
 };
 // clang-format on

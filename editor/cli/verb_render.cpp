@@ -65,6 +65,9 @@ Status run(const Args& args) {
     desc->mode = OpenMode::read_only;
     auto session = Session::open(args.positional(0), *desc);
     if (!session) return session.error();
+    if (args.has("--time"))
+        if (auto moved = (*session)->apply({TimeCommand{args.number("--time", 0)}}); !moved)
+            return moved.error();
     auto request = request_of(args, **session);
     if (!request) return request.error();
     const std::string file = args.text("-o", "out.png");
@@ -107,32 +110,35 @@ Verb render_verb() {
         text.pop_back();
         return text;
     }();
-    return {.name = "render",
-            .summary = "renders a picture without a window",
-            .positionals = {{"PROJECT", "project folder"}},
-            .options = with_device_options(
-                {{"-o", ValueKind::text, "FILE", "picture to write, PNG; default out.png"},
-                 {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]",
-                  "metres and degrees; yaw is clockwise from north"},
-                 {"--look-at", ValueKind::look_at, "EX,EY,EZ,TX,TY,TZ[,FOV]", "from an eye to a target"},
-                 {"--size", ValueKind::size, "WxH", "pixels; default 1280x720"},
-                 {"--reference", ValueKind::none, "",
-                  "every pixel evaluated directly: no cache, no compression, at least 4x4 samples"},
-                 {"--supersample", ValueKind::integer, "N", "average of N x N pictures"},
-                 {"--render-scale", ValueKind::number, "S",
-                  "share of the width and height that is rendered; default 1"},
-                 {"--max-frames", ValueKind::integer, "N", "stop refining after so many; default 600"},
-                 {"--filter", ValueKind::text, "FILTER",
-                  "of the texture: bilinear, trilinear, tiles, hardware; default auto, the device's best"},
-                 {"--debug", ValueKind::text, "VIEW",
-                  "what the picture is made of instead of the picture; see below"},
-                 {"--from", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]",
-                  "first render from here until the picture rests, then jump to the camera"},
-                 {"--announce", ValueKind::integer, "N",
-                  "before that jump, make pages of the new place for N frames; default 0"},
-                 {"--json", ValueKind::none, "", "print figures as JSON"}}),
-            .run = run,
-            .notes = notes.c_str()};
+    return {
+        .name = "render",
+        .summary = "renders a picture without a window",
+        .positionals = {{"PROJECT", "project folder"}},
+        .options = with_device_options(
+            {{"-o", ValueKind::text, "FILE", "picture to write, PNG; default out.png"},
+             {"--camera", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]",
+              "metres and degrees; yaw is clockwise from north"},
+             {"--look-at", ValueKind::look_at, "EX,EY,EZ,TX,TY,TZ[,FOV]", "from an eye to a target"},
+             {"--size", ValueKind::size, "WxH", "pixels; default 1280x720"},
+             {"--time", ValueKind::number, "S",
+              "seconds: operators with a life and events as they are then; default as the project was left"},
+             {"--reference", ValueKind::none, "",
+              "every pixel evaluated directly: no cache, no compression, at least 4x4 samples"},
+             {"--supersample", ValueKind::integer, "N", "average of N x N pictures"},
+             {"--render-scale", ValueKind::number, "S",
+              "share of the width and height that is rendered; default 1"},
+             {"--max-frames", ValueKind::integer, "N", "stop refining after so many; default 600"},
+             {"--filter", ValueKind::text, "FILTER",
+              "of the texture: bilinear, trilinear, tiles, hardware; default auto, the device's best"},
+             {"--debug", ValueKind::text, "VIEW",
+              "what the picture is made of instead of the picture; see below"},
+             {"--from", ValueKind::camera, "X,Y,Z,YAW,PITCH[,FOV]",
+              "first render from here until the picture rests, then jump to the camera"},
+             {"--announce", ValueKind::integer, "N",
+              "before that jump, make pages of the new place for N frames; default 0"},
+             {"--json", ValueKind::none, "", "print figures as JSON"}}),
+        .run = run,
+        .notes = notes.c_str()};
 }
 
 }  // namespace loam::cli

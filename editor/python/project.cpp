@@ -170,6 +170,56 @@ py::object apply_keywords(Project& p, const char* name, const py::kwargs& keywor
     return p.apply(command);
 }
 
+// What a game calls for its actors.
+struct Events {
+    Project& project;
+    [[nodiscard]] Prints& prints() const { return project.session().prints(); }
+};
+
+void bind_events(py::module_& module) {
+    using Place = std::array<double, 2>;
+    py::class_<Events> c(module, "Events");
+    c.def(
+        "step",
+        [](const Events& e, uint64_t actor, int foot, const Place& at, double heading_rad, double length_m,
+           double weight_kg) {
+            return unwrap(e.prints().step(actor, foot, {at[0], at[1]}, heading_rad, {length_m, weight_kg}));
+        },
+        "A foot comes down, 0 left or 1 right; False where the ground is too hard for a print.",
+        py::arg("actor"), py::arg("foot"), py::arg("at"), py::arg("heading_rad"),
+        py::arg("length_m") = FootDesc{}.length_m, py::arg("weight_kg") = FootDesc{}.weight_kg);
+    c.def(
+        "tread",
+        [](const Events& e, uint64_t actor, const Place& at, double width_m, double gauge_m,
+           double weight_kg) {
+            return unwrap(e.prints().tread(actor, {at[0], at[1]}, {width_m, gauge_m, weight_kg}));
+        },
+        "The axle of an actor is here now: tracks from where it was at its last call; how many pieces.",
+        py::arg("actor"), py::arg("at"), py::arg("width_m") = TreadDesc{}.width_m,
+        py::arg("gauge_m") = TreadDesc{}.gauge_m, py::arg("weight_kg") = TreadDesc{}.weight_kg);
+    c.def(
+        "lift", [](const Events& e, uint64_t actor) { e.prints().lift(actor); },
+        "The actor's next tread begins where it is then.", py::arg("actor"));
+    c.def(
+        "flush", [](const Events& e) { return to_python(to_report(unwrap(e.prints().flush()))); },
+        "Lays what was gathered now, which the next picture or move of the time does by itself.");
+    c.def_property_readonly("waiting", [](const Events& e) { return e.prints().waiting(); });
+    const auto number = [&](const char* name, auto member, const char* help) {
+        c.def_property(
+            name, [member](const Events& e) { return e.prints().settings.*member; },
+            [member](const Events& e, double value) {
+                using Value = std::remove_reference_t<decltype(e.prints().settings.*member)>;
+                if (!(value >= 0 && value <= 1e9)) throw PythonError("must be 0 … 1000000000");
+                e.prints().settings.*member = Value(value);
+            },
+            help);
+    };
+    number("lifetime_s", &PrintSettings::lifetime_s, "How long prints last; 0: for ever.");
+    number("fade_s", &PrintSettings::fade_s, "Of that the last, in which they fill.");
+    number("keep", &PrintSettings::keep,
+           "Prints with a lifetime on the map; the oldest are dropped. 0: any number.");
+}
+
 py::object edit_operator(Project& p, uint64_t id, const py::kwargs& changes) {
     for (const Operator& op : p.session().document().operators()) {
         if (op.id != id) continue;
@@ -404,6 +454,38 @@ void bind_edits(py::class_<Project>& c) {
             return p.apply_json({{"cmd", "undo"}});
         },
         "Undoes the newest group of commands.");
+    c.def_property(
+        "time_s", [](Project& p) { return p.session().document().time_s(); },
+        [](Project& p, double time_s) {
+            p.apply_json({{"cmd", "time"}, {"time_s", time_s}});
+        },
+        "Operators with a life and events are shown as they are at this time, seconds.");
+    c.def(
+        "event",
+        [](Project& p, const std::string& kind, const py::kwargs& keywords) {
+            keywords["event"] = kind;
+            return apply_keywords(p, "event", keywords);
+        },
+        "An event: crater (x, y, energy_j), crater_line (x, y, to, count), barrage (x, y, radius_m, count), "
+        "crash (x, y, to, width_m, count), landslide (x, y, to, radius_m, volume_m3) or flood (x, y, "
+        "radius_m, "
+        "level_m, from_m, layer); of all start_s, duration_s, seed; of impacts cool_s, weather_s.",
+        py::arg("kind"));
+    c.def(
+        "event_cost",
+        [](Project& p, uint64_t id) {
+            const auto cost = p.session().document().event_cost(id);
+            py::dict d;
+            d["stored_bytes"] = cost.stored_bytes;
+            d["parts"] = cost.parts;
+            d["memory_bytes"] = cost.memory_bytes;
+            return d;
+        },
+        "Bytes of an event's parameters, how many operators they stand for, and what those take in memory.",
+        py::arg("id"));
+    c.def_property_readonly(
+        "events", [](Project& p) { return Events{p}; }, py::keep_alive<0, 1>(),
+        "The calls that a game makes: step, tread, lift, flush.");
     c.def("redo", [](Project& p) { return p.apply_json({{"cmd", "redo"}}); });
     c.def_property_readonly("can_undo", [](Project& p) { return p.session().document().can_undo(); });
     c.def_property_readonly("can_redo", [](Project& p) { return p.session().document().can_redo(); });
@@ -536,6 +618,7 @@ void bind_project(py::module_& module) {
             [](const Camera& c) { return py::make_tuple(c.position_m.x, c.position_m.y, c.position_m.z); })
         .def_readonly("yaw_rad", &Camera::yaw_rad)
         .def_readonly("pitch_rad", &Camera::pitch_rad);
+    bind_events(module);
     py::class_<Project> c(module, "Project");
     bind_edits(c);
     bind_queries(c);

@@ -22,14 +22,14 @@ constexpr LayerFunction kFunctions[] = {
 
 const std::vector<LayerRecipe>& layer_recipe_names() {
     static const std::vector<LayerRecipe> names = {
-        {"grass", "green sward with clover", 2},
-        {"dry_grass", "straw-coloured grass over soil", 2},
-        {"forest_floor", "fallen leaves, needles and twigs", 2},
-        {"dirt", "trodden soil with clods and pebbles", 2},
-        {"scree", "angular stones of all sizes", 3},
-        {"rock", "fractured beds with cracks and lichen", 4},
-        {"sand", "wind-rippled sand", 2, {0, 0, 0, 0.4}},
-        {"snow", "wind-packed snow", 3, {0.8, 0, 0, 0.7}},
+        {"grass", "green sward with clover", 2, 0.1},
+        {"dry_grass", "straw-coloured grass over soil", 2, 0.08},
+        {"forest_floor", "fallen leaves, needles and twigs", 2, 0.2},
+        {"dirt", "trodden soil with clods and pebbles", 2, 0.25},
+        {"scree", "angular stones of all sizes", 3, 0.03},
+        {"rock", "fractured beds with cracks and lichen", 4, 0},
+        {"sand", "wind-rippled sand", 2, 0.6, {0, 0, 0, 0.4}},
+        {"snow", "wind-packed snow", 3, 1, {0.8, 0, 0, 0.7}},
     };
     return names;
 }
@@ -56,7 +56,8 @@ Result<std::vector<LayerEntry>> make_layers_for(const std::filesystem::path& fol
         entries.push_back({.name = n.name,
                            .file = "layers/" + std::string(n.name) + ".layer",
                            .tile_m = n.tile_m,
-                           .channels = n.channels});
+                           .channels = n.channels,
+                           .softness = n.softness});
     std::vector<std::optional<Error>> faults(names.size());
     const int count = static_cast<int>(names.size());
     parallel_ranges(count, 1, [&](int begin, int end) {

@@ -19,6 +19,7 @@ struct LayerRecipe {
     const char* name;
     const char* description;
     double tile_m;                                        // world size of one repeat
+    double softness;                                      // underfoot
     std::array<double, kChannelNames.size()> channels{};  // seen on maps that choose them
 };
 [[nodiscard]] const std::vector<LayerRecipe>& layer_recipe_names();

@@ -32,6 +32,9 @@ constexpr Bound kBound[] = {
     {"road", Key::digit_9, {}},
     {"stamp", Key::digit_0, {}},
     {"cutout", Key::c, {}},
+    {"event", Key::e, {}},
+    {"play", Key::space, {}},
+    {"timeline", Key::t, {}},
     {"raise", Key::r, {}},
     {"lower", Key::l, {}},
     {"paint", Key::b, {}},
@@ -76,6 +79,11 @@ void App::run(std::string_view action, ui::Ui& ui) {
     if (action == "previous layer" || action == "next layer") {
         const int count = static_cast<int>(layer_names.size());
         if (count > 0) set_layer((layer() + (action == "next layer" ? 1 : count - 1)) % count);
+        return;
+    }
+    if (action == "play") return play(!playing);
+    if (action == "timeline") {
+        show_timeline = !show_timeline;
         return;
     }
     if (action == "undo") return undo_step();

@@ -31,22 +31,33 @@ struct Titles {
     std::string operator()(const FootprintsCommand&) const { return "Footprints"; }
     std::string operator()(const AddOperatorCommand& c) const { return std::string(kind_title(c.shape)); }
     std::string operator()(const EditOperatorCommand& c) const { return fmt::format("Edit {}", kind_title(c.shape)); }
-    std::string operator()(const ReorderCommand&) const { return "Reorder event"; }
-    std::string operator()(const SetOperatorCommand& c) const { return c.enabled ? "Show event" : "Hide event"; }
-    std::string operator()(const RemoveOperatorCommand&) const { return "Remove event"; }
+    std::string operator()(const ReorderCommand&) const { return "Reorder object"; }
+    std::string operator()(const SetOperatorCommand& c) const {
+        return c.enabled ? "Show object" : "Hide object";
+    }
+    std::string operator()(const RemoveOperatorCommand&) const { return "Remove object"; }
     std::string operator()(const TransitionCommand& c) const {
         return fmt::format("{} {}", c.remove ? "Remove" : "Transition", c.name);
     }
+    std::string operator()(const TimeCommand& c) const { return fmt::format("Time {:.1f} s", c.time_s); }
     std::string operator()(const UndoCommand&) const { return "Undo"; }
     std::string operator()(const RedoCommand&) const { return "Redo"; }
 };
 
 } // namespace
 
+std::string_view title_of(EventKind kind) {
+    constexpr std::string_view names[] = {"Impact",     "Line of craters", "Barrage",
+                                          "Crash site", "Landslide",       "Flood"};
+    static_assert(std::size(names) == kEventKinds);
+    return names[size_t(kind)];
+}
+
 std::string_view kind_title(const OperatorShape& shape) {
-    constexpr std::string_view names[] = {"Crater",       "Footprint", "Decal", "Road",
-                                          "Volume decal", "Stamp",     "Cutout"};
+    constexpr std::string_view names[] = {"Crater", "Footprint", "Decal", "Road",  "Volume decal",
+                                          "Stamp",  "Cutout",    "Slide", "Flood", "Event"};
     static_assert(std::size(names) == std::variant_size_v<OperatorShape>);
+    if (const auto* event = std::get_if<Event>(&shape)) return title_of(event->kind);
     return names[shape.index()];
 }
 

@@ -54,6 +54,10 @@ struct ObjectRow {  // of the outliner
     std::string title;  // "Stamp 12 · ridge"
     bool enabled = true;
     WorldRect bounds;  // of all that it changes
+    // Of an event or an operator with a life: seconds of its beginning, of the end of its motion, and of its
+    // end.
+    bool timed = false;
+    double from_s = 0, moved_s = 0, until_s = 0;
 };
 
 // Asked for by actions, done by the window's loop between two frames.
@@ -88,6 +92,8 @@ class App {
     std::string new_stamp_name;  // likewise; empty: the file's
     std::string object_search;   // of the outliner
     uint64_t selected_object = 0;  // an operator's id; 0, or one that is gone: none
+    uint64_t object_group = 0;     // of a parameter that is being dragged
+    bool play_placed = true;       // the time runs once an event is placed
     bool quit = false;
 
     // --- edits ---
@@ -133,6 +139,20 @@ class App {
     void move_object(uint64_t id, bool later);  // past its neighbour in the order of evaluation
     void frame_object();                        // the selected one
 
+    [[nodiscard]] const Operator* selected_operator();  // null: none
+
+    // --- the time (timeline.cpp) ---
+    bool show_timeline = false;
+    bool playing = false;
+    double play_speed = 1;
+    [[nodiscard]] double time_s() const;
+    void set_time(double time_s);
+    void play(bool on);
+    void advance_time(double dt_s);             // once a frame
+    void event_placed(const Command& command);  // nothing for any other command
+    [[nodiscard]] double timeline_end_s();
+    [[nodiscard]] const std::vector<ObjectRow>& timed_objects();  // by beginning, without prints
+
     // --- actions: menu entries, shortcuts and buttons ---
     void run(std::string_view action, ui::Ui& ui);
     // Keys that the interface did not use. While flying the letter keys steer.
@@ -147,7 +167,8 @@ class App {
     [[nodiscard]] bool flying() const { return drag_ == CameraInput::Drag::look; }
     // A frame must follow at once: something moves by itself or is being held down.
     [[nodiscard]] bool busy() const {
-        return filling() || tools.stroking() || camera.moving() || drag_ != CameraInput::Drag::none;
+        return playing || filling() || tools.stroking() || camera.moving() ||
+               drag_ != CameraInput::Drag::none;
     }
 
     // --- messages ---
@@ -178,7 +199,10 @@ class App {
     std::vector<HistoryStep> history_;
     uint64_t history_revision_ = ~uint64_t{0};
     std::vector<ObjectRow> objects_;
+    std::vector<ObjectRow> timed_objects_;
     uint64_t objects_revision_ = ~uint64_t{0};
+    std::optional<Operator> selected_operator_;
+    uint64_t selected_operator_revision_ = ~uint64_t{0};
     void read_layer_names();
 
     bool scene_changed_ = true, settings_changed_ = false, quality_changed_ = false;
@@ -190,12 +214,14 @@ class App {
     std::optional<ToolController::Ring> ring_;
     std::vector<ToolController::Outline> outlines_;
     uint64_t cursor_revision_ = ~uint64_t{0};
+    double cursor_time_s_ = 0;
     glm::dvec3 cursor_camera_{0};
     double cursor_yaw_ = 0, cursor_pitch_ = 0;
 };
 
 // "Crater", "Road".
 [[nodiscard]] std::string_view kind_title(const OperatorShape& shape);
+[[nodiscard]] std::string_view title_of(EventKind kind);
 // "Raise · 24", from a command's JSON line.
 [[nodiscard]] std::string command_title(std::string_view json);
 

@@ -2,6 +2,7 @@
 // remove.
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 
 #include "editor/window/panels.h"
 
@@ -19,10 +20,22 @@ std::string detail_of(const OperatorShape& shape) {
     return material ? material->layer : std::string();
 }
 
-WorldRect bounds_of(const Operator& op) {
-    WorldRect all = united(united(op.height_bounds(), op.index_bounds()), op.texture_bounds());
-    for (const WorldRect& rect : op.cutout_rects()) all = united(all, rect);
-    return all;
+// When it is there, and until when it moves.
+void add_times(const Operator& op, ObjectRow& row) {
+    const auto* event = std::get_if<Event>(&op.shape);
+    row.timed = event || !op.life.ever();
+    if (event) {
+        row.from_s = event->start_s;
+        row.moved_s = event->start_s + event->duration_s;
+        row.until_s = end_s(*event);
+    } else if (row.timed) {
+        const Life& life = op.life;
+        row.from_s = std::isfinite(life.from_s) ? life.from_s : 0;
+        row.moved_s = row.from_s + life.rise_s;
+        row.until_s = std::isfinite(life.until_s)
+                          ? life.until_s
+                          : row.from_s + std::max({life.rise_s, life.cool_s, life.weather_s});
+    }
 }
 
 bool found(const std::string& title, const std::string& search) {
@@ -63,6 +76,7 @@ const std::vector<ObjectRow>& App::objects() {
     if (objects_revision_ == revision || tools.stroking()) return objects_;
     objects_revision_ = revision;
     objects_.clear();
+    timed_objects_.clear();
     const std::vector<Operator> operators = session.document().operators();
     for (auto op = operators.rbegin(); op != operators.rend(); ++op) {
         const std::string detail = detail_of(op->shape);
@@ -71,9 +85,24 @@ const std::vector<ObjectRow>& App::objects() {
                             .title = fmt::format("{} {}{}{}", kind_title(op->shape), op->id,
                                                  detail.empty() ? "" : " · ", detail),
                             .enabled = op->enabled,
-                            .bounds = bounds_of(*op)});
+                            .bounds = op->extent()});
+        add_times(*op, objects_.back());
+        // Prints are too many for bars.
+        if (objects_.back().timed && !std::holds_alternative<Footprint>(op->shape))
+            timed_objects_.push_back(objects_.back());
     }
+    std::stable_sort(timed_objects_.begin(), timed_objects_.end(),
+                     [](const ObjectRow& a, const ObjectRow& b) { return a.from_s < b.from_s; });
     return objects_;
+}
+
+const Operator* App::selected_operator() {
+    if (selected_operator_revision_ != session.document().revision() || !selected_operator_ ||
+        selected_operator_->id != selected_object) {
+        selected_operator_revision_ = session.document().revision();
+        selected_operator_ = session.document().find_operator(selected_object);
+    }
+    return selected_operator_ ? &*selected_operator_ : nullptr;
 }
 
 const ObjectRow* App::selected_row() {
@@ -119,7 +148,7 @@ void App::frame_object() {
 
 void object_properties(App& app, ui::Ui& ui) {
     const std::vector<ObjectRow>& rows = app.objects();  // another one after selected_row() below
-    if (rows.empty()) return ui::label(ui, "No craters, decals, roads or cutouts yet", ui::Tone::dim);
+    if (rows.empty()) return ui::label(ui, "No craters, decals, roads, cutouts or events yet", ui::Tone::dim);
     ui::text_field(ui, "##objects", app.object_search,
                    {.placeholder = fmt::format("Search {} objects", rows.size()), .icon = ui::Icon::search});
     std::vector<const ObjectRow*> shown;
@@ -152,6 +181,7 @@ void object_properties(App& app, ui::Ui& ui) {
             app.remove_object(id);
     }
     ui.pop_disabled();
+    selected_event_properties(app, ui);
 }
 
 }  // namespace loam::window

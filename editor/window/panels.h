@@ -14,6 +14,10 @@ void transition_properties(App& app, ui::Ui& ui); // sections of it
 void ground_properties(App& app, ui::Ui& ui);
 void imagery_properties(App& app, ui::Ui& ui);
 void object_properties(App& app, ui::Ui& ui);  // the outliner
+void event_tool_properties(App& app, ui::Ui& ui);
+void selected_event_properties(App& app, ui::Ui& ui);
+bool event_sliders(ui::Ui& ui, Event& event);  // what its kind has; whether something was changed
+void build_timeline(App& app, ui::Ui& ui);
 void build_status_line(App& app, ui::Ui& ui);
 void build_shader_errors(App& app, ui::Ui& ui); // only while there are some
 void build_dialogs(App& app, ui::Ui& ui);

@@ -213,6 +213,9 @@ void tool_properties(App& app, ui::Ui& ui) {
         case Tool::stamp:
             stamp_properties(ui, app);
             break;
+        case Tool::event:
+            event_tool_properties(app, ui);
+            break;
     }
     ui.pop_id();
 }

@@ -17,6 +17,8 @@ ui::Icon tool_icon(Tool tool) {
             return ui::Icon::stamp;
         case Tool::cutout:
             return ui::Icon::cutout;
+        case Tool::event:
+            return ui::Icon::event;
     }
     return ui::Icon::none;
 }
@@ -38,6 +40,8 @@ std::string_view tool_hint(Tool tool) {
             return "Lay a picture as height: click, or drag to turn it";
         case Tool::cutout:
             return "Cut a hole into the ground. Ctrl closes it again";
+        case Tool::event:
+            return "Set off an event: an impact, a crash, a landslide, a flood";
     }
     return {};
 }

@@ -14,10 +14,10 @@ constexpr double kCoarse_m = 0.25;   // a road's outline may miss it by so much
 
 constexpr std::array<std::string_view, kToolCount> kNames = {"raise", "lower",  "smooth",     "flatten",
                                                              "paint", "crater", "footprints", "decal",
-                                                             "road",  "stamp",  "cutout"};
+                                                             "road",  "stamp",  "cutout",     "event"};
 constexpr std::array<std::string_view, kToolCount> kTitles = {"Raise", "Lower",  "Smooth",     "Flatten",
                                                               "Paint", "Crater", "Footprints", "Decal",
-                                                              "Road",  "Stamp",  "Cutout"};
+                                                              "Road",  "Stamp",  "Cutout",     "Event"};
 
 SculptMode mode_of(Tool tool) {
     switch (tool) {
@@ -49,6 +49,7 @@ ToolController::ToolController(ToolQueries queries) : queries_(std::move(queries
     settings.brushes[size_t(Tool::decal)] = {.radius_m = 4, .strength = 1, .hardness = 0.7};
     settings.brushes[size_t(Tool::stamp)] = {.radius_m = 40, .strength = 1, .hardness = 0.8};
     settings.brushes[size_t(Tool::cutout)].radius_m = 5;
+    for (int i = 0; i < kEventKinds; ++i) settings.events[size_t(i)] = default_event(EventKind(i));
     settings.brushes[size_t(Tool::road)] = {.radius_m = 3, .strength = 1, .hardness = 0.7};
 }
 
@@ -236,6 +237,47 @@ std::optional<Command> ToolController::cutout(const ToolInput& input) {
     return Command{.body = AddOperatorCommand{std::move(c)}, .group = group_};
 }
 
+// From where the button went down to the cursor, where the kind goes somewhere; after a click straight ahead.
+Event ToolController::event_at(const ToolInput& input) const {
+    Event e = settings.events[size_t(settings.event_kind)];
+    e.x_m = center_m_.x;
+    e.y_m = center_m_.y;
+    e.start_s = input.time_s;
+    e.seed = settings.seed;
+    const bool dragged = input.ground && input.moved_px >= kDragBegins_px;
+    const double heading = heading_rad(input);
+    const glm::dvec2 ahead(std::sin(heading), std::cos(heading));
+    switch (e.kind) {
+        case EventKind::crater_line: {
+            const double length_m = 3 * loam::crater_radius_m(e.energy_j) * e.count;
+            e.to_m = dragged ? glm::dvec2(*input.ground) : center_m_ + ahead * length_m;
+            break;
+        }
+        case EventKind::crash: {
+            e.to_m = dragged ? glm::dvec2(*input.ground) : center_m_ + ahead * (12 * e.width_m);
+            if (glm::length(*e.to_m - center_m_) < e.width_m) e.to_m = center_m_ + ahead * (1.01 * e.width_m);
+            break;
+        }
+        case EventKind::landslide:
+            if (dragged) e.to_m = glm::dvec2(*input.ground);
+            break;
+        case EventKind::flood:
+            e.from_m = target_m_ - 0.5;
+            e.level_m = target_m_ + settings.flood_rise_m;
+            break;
+        default:
+            break;
+    }
+    return e;
+}
+
+std::optional<Command> ToolController::event(const ToolInput& input) {
+    if (!input.released) return {};
+    Command command{.body = AddOperatorCommand{event_at(input)}, .group = group_};
+    ++settings.seed;
+    return command;
+}
+
 glm::dvec2 ToolController::box_half_m() const {
     const double stretch = tool == Tool::stamp    ? settings.stamp.stretch
                            : tool == Tool::cutout ? settings.cutout.stretch
@@ -302,6 +344,8 @@ std::vector<Command> ToolController::update(const ToolInput& input) {
             command = stamp(input);
         else if (tool == Tool::cutout)
             command = cutout(input);
+        else if (tool == Tool::event)
+            command = event(input);
         else if (tool == Tool::paint) command = paint(input);
         else command = sculpt(input);
     }
@@ -326,6 +370,11 @@ std::vector<ToolController::Outline> ToolController::outlines(const ToolInput& i
             }
         return {box};
     }
+    if (tool == Tool::event && stroking_) {
+        const Event e = event_at(input);
+        if (e.to_m) return {Outline{.places_m = {center_m_, *e.to_m}, .closed = false}};
+        return {};
+    }
     if (tool != Tool::road || road_.empty()) return {};
     std::vector<glm::dvec3> places = road_;
     if (input.ground && !stroking_) places.push_back(*input.ground); // where a click would lead it
@@ -347,6 +396,13 @@ std::optional<ToolController::Ring> ToolController::ring(const ToolInput& input)
     if (!input.ground) return {};
     const glm::dvec2 at(*input.ground);
     if (tool == Tool::crater) return Ring{stroking_ ? center_m_ : at, crater_radius_m(input), 0};
+    if (tool == Tool::event) {
+        const Event& e = settings.events[size_t(settings.event_kind)];
+        const double radius_m = e.kind == EventKind::crash ? e.width_m / 2
+                                : e.radius_m > 0           ? e.radius_m
+                                                           : loam::crater_radius_m(e.energy_j);
+        return Ring{stroking_ ? center_m_ : at, radius_m, 0};
+    }
     if (tool == Tool::footprints) return Ring{at, settings.gait.length_m * 0.5, 0};
     if (places_box() && stroking_) return {};
     const bool even = tool == Tool::road || tool == Tool::cutout;

@@ -20,8 +20,21 @@
 
 namespace loam::window {
 
-enum class Tool { raise, lower, smooth, flatten, paint, crater, footprints, decal, road, stamp, cutout };
-inline constexpr int kToolCount = 11;
+enum class Tool {
+    raise,
+    lower,
+    smooth,
+    flatten,
+    paint,
+    crater,
+    footprints,
+    decal,
+    road,
+    stamp,
+    cutout,
+    event
+};
+inline constexpr int kToolCount = 12;
 [[nodiscard]] std::string_view tool_name(Tool tool);   // "raise": also the action's name
 [[nodiscard]] std::string_view tool_title(Tool tool);  // "Raise"
 
@@ -76,6 +89,9 @@ struct ToolSettings {
     RoadDesc road; // the brush's radius is half the width
     StampDesc stamp;
     CutoutDesc cutout;
+    EventKind event_kind = EventKind::crater;
+    std::array<Event, kEventKinds> events;  // of each kind the next one's parameters
+    double flood_rise_m = 3;                // above the ground where it is placed
 };
 
 struct ToolInput {
@@ -85,6 +101,7 @@ struct ToolInput {
     double moved_px = 0;              // from where the button went down
     double camera_yaw_rad = 0;
     double dt_s = 0;
+    double time_s = 0;  // of the map: when an event begins
 };
 
 // What the tools ask the document.
@@ -140,6 +157,8 @@ class ToolController {
     std::optional<Command> road(const ToolInput& input);
     std::optional<Command> stamp(const ToolInput& input);
     std::optional<Command> cutout(const ToolInput& input);
+    std::optional<Command> event(const ToolInput& input);
+    [[nodiscard]] Event event_at(const ToolInput& input) const;
     [[nodiscard]] bool places_box() const {
         return tool == Tool::decal || tool == Tool::stamp ||
                (tool == Tool::cutout && settings.cutout.form != CutoutForm::brush);

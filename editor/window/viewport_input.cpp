@@ -81,7 +81,9 @@ void App::find_cursor_ground(const ui::ViewportResponse& response) {
         eye.position_m == cursor_camera_ && eye.yaw_rad == cursor_yaw_ && eye.pitch_rad == cursor_pitch_;
     const bool mouse_same = response.mouse == mouse_;
     const uint64_t revision = session.document().revision();
-    if (camera_same && mouse_same && revision == cursor_revision_) return;
+    const double time_s = session.document().time_s();
+    if (camera_same && mouse_same && revision == cursor_revision_ && time_s == cursor_time_s_) return;
+    cursor_time_s_ = time_s;
     cursor_camera_ = eye.position_m;
     cursor_yaw_ = eye.yaw_rad;
     cursor_pitch_ = eye.pitch_rad;
@@ -120,8 +122,10 @@ void App::viewport_input(ui::Ui& ui, const ui::ViewportResponse& response, doubl
                           .shift = ui.mods().shift,
                           .moved_px = std::hypot(moved.x, moved.y),
                           .camera_yaw_rad = camera.camera().yaw_rad,
-                          .dt_s = dt_s};
-    for (const Command& command : tools.update(input)) apply(command);
+                          .dt_s = dt_s,
+                          .time_s = time_s()};
+    for (const Command& command : tools.update(input))
+        if (apply(command)) event_placed(command);
     if (response.released) tool_drag_ = false;
     ring_ = drag_ == CameraInput::Drag::none ? tools.ring(input) : std::nullopt;
     outlines_ = tools.outlines(input);

@@ -77,6 +77,7 @@ const ui::FrameOutput& WindowLoop::build(double now_s, double dt_s, std::span<co
     ui_.begin_frame({.events = events, .time_s = now_s, .size_px = {float(size_px_.x), float(size_px_.y)}});
     build_menus(app_, ui_);
     build_status_line(app_, ui_);
+    build_timeline(app_, ui_);
     build_shader_errors(app_, ui_);
     build_tool_bar(app_, ui_);
     build_properties(app_, ui_);
@@ -106,6 +107,7 @@ Status WindowLoop::iterate() {
     const bool was_busy = app_.busy();
     const ui::FrameOutput& out = build(now, was_busy ? dt : 0, events);
     app_.handle_keys(out.keys, ui_);
+    app_.advance_time(was_busy ? dt : 0);
     app_.advance_fill();
     app_.advance_import();
     platform_.set_cursor(out.cursor);

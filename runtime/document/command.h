@@ -16,7 +16,8 @@
 //       "max_height_m":16384,"noise":0,"noise_size_m":8 (GroundMask below says what they mean)
 //   {"cmd":"crater","x":…,"y":…,"radius_m":10,"depth_m":4,"seed":7,"heat":0.8}
 //   {"cmd":"footprints","prints":[{"x":…,"y":…,"heading_rad":…,"foot":0},…],"length_m":0.3,"depth_m":0.03,"seed":1}
-//       a print may have its own length_m, depth_m and seed; else print i has seed + i
+//       a print may have its own length_m, depth_m and seed; else print i has seed + i. foot: 0 left, 1
+//       right, 2 a piece of a tyre's track, 3 of a furrow. "keep":10000 drops the oldest of those with an end
 //   {"cmd":"decal","x":…,"y":…,"half_m":[4,2],"heading_rad":0,"outline":"rectangle", MATERIAL}
 //   {"cmd":"spline","points":[[x,y,z,width],…],"fade_m":0,"carve":0,"shoulder_m":3, MATERIAL}
 //       control points of cubic Bezier pieces: 4, 7, 10, …; without a width they take "width_m", and a carve
@@ -32,14 +33,24 @@
 //   {"cmd":"cutout","form":"box","at":[x,y,z],"half_m":[4,4,3],"direction":[0,0,-1],"roll_rad":0,"fill":false}
 //       forms: box and cylinder; "convex" with "corners":[[x,y,z],…]; "brush" with "dabs":[[x,y],…] and
 //       "radius_m":5. A fill closes what those before it opened  (cutout.h)
+//   {"cmd":"slide","x":0,"y":0,"radius_m":10,"to":[50,0],"to_radius_m":15,"volume_m3":100,"way":1}
+//   {"cmd":"flood","x":0,"y":0,"radius_m":200,"level_m":12,"from_m":7,"layer":"mud","way":1}  (earth.h)
+//   {"cmd":"event","event":"crater","x":0,"y":0,"energy_j":6.5e10,"start_s":0,"duration_s":0,"cool_s":120,
+//    "weather_s":0,"seed":1}
+//       others: crater_line with "to":[x,y] and "count"; barrage with "radius_m" and "count"; crash with
+//       "to", "width_m" and "count"; landslide with "to" (without: downhill), "radius_m" and "volume_m3";
+//       flood with "radius_m", "level_m", "from_m" and "layer"  (event.h) LIFE, of all operators but events:
+//       "life":{"from_s":0,"until_s":60,"rise_s":0,"fade_s":0,"cool_s":0, "weather_s":0}  (life.h); an edit
+//       without one keeps what there is
 //   {"cmd":"transition","name":"edge","from":"grass","to":"rock","threshold":0.5}   makes one, or changes
 //   what is
 //       given of it; {"cmd":"transition","name":"edge","remove":true}   (transitions.h)
 //   {"cmd":"edit","id":12,"kind":"decal", …}   replaces all parameters; kinds: crater, footprint, decal,
-//       spline, volume, stamp, cutout
+//       spline, volume, stamp, cutout, slide, flood, event
 //   {"cmd":"reorder","id":12,"order":3}   evaluated in ascending order, then id; a new operator's order is
 //   its id
 //   {"cmd":"operator","id":12,"enabled":false}    {"cmd":"remove","id":12}
+//   {"cmd":"time","time_s":12.5}   shows the map as it is then; like a camera it is not undone
 //   {"cmd":"undo"}    {"cmd":"redo"}
 // Required: mode and dabs; form; target_m to flatten; layer or tint; x and y (of a fill no dabs); prints;
 // points; at; id, enabled and order; name. The rest have the defaults below. Any command may carry "group":
@@ -108,16 +119,23 @@ struct FillCommand {
 
 struct CraterCommand {
     Crater crater;
+    Life life;
 };
 struct FootprintsCommand {
     std::vector<Footprint> prints;
+    Life life;  // of each
+    // Of the prints that end some day, those of earlier commands included, the oldest beyond this many are
+    // removed. 0: none.
+    uint64_t keep = 0;
 };
 struct AddOperatorCommand {  // all but craters and footprints
     OperatorShape shape;
+    Life life;
 };
 struct EditOperatorCommand {
     uint64_t id = 0;
     OperatorShape shape;
+    std::optional<Life> life;  // none: as it is
 };
 struct ReorderCommand {
     uint64_t id = 0, order = 0;
@@ -136,12 +154,16 @@ struct TransitionCommand {
     std::optional<double> threshold;
     bool remove = false;  // its texels show the nearer of the two; nothing else is given then
 };
+struct TimeCommand {
+    double time_s = 0;
+};
 struct UndoCommand {};
 struct RedoCommand {};
 
-using CommandBody = std::variant<SculptCommand, PaintCommand, FillCommand, CraterCommand, FootprintsCommand,
-                                 AddOperatorCommand, EditOperatorCommand, ReorderCommand, SetOperatorCommand,
-                                 RemoveOperatorCommand, TransitionCommand, UndoCommand, RedoCommand>;
+using CommandBody =
+    std::variant<SculptCommand, PaintCommand, FillCommand, CraterCommand, FootprintsCommand,
+                 AddOperatorCommand, EditOperatorCommand, ReorderCommand, SetOperatorCommand,
+                 RemoveOperatorCommand, TransitionCommand, TimeCommand, UndoCommand, RedoCommand>;
 
 struct Command {
     CommandBody body;
@@ -156,6 +178,7 @@ struct Command {
 // The ranges of all numbers; `apply` and parse_command refuse what does not pass.
 [[nodiscard]] Status check_command(const Command& command);
 [[nodiscard]] Status check_shape(const OperatorShape& shape);
+[[nodiscard]] Status check_life(const Life& life);
 
 // Brush falloff, 1 at the centre to 0 at the rim; `t` = distance / radius. Smooth (C1) for any hardness.
 [[nodiscard]] double brush_falloff(double t, double hardness);

@@ -12,6 +12,7 @@ namespace loam {
 namespace {
 
 constexpr double kFarthest_m = 1.0e6;  // of any coordinate; the map may be left, not the world
+constexpr double kLongestTime_s = 1.0e9;
 constexpr size_t kMaxDabs = 100'000, kMaxPrints = 100'000;
 constexpr size_t kMaxControlPoints = 10'000;
 constexpr double kHighest_m = 20'000, kSmallestHalf_m = 0.01, kLargestHalf_m = 5000,
@@ -90,16 +91,17 @@ Status check(const Crater& c) {
     LOAM_TRY(place_ok("the crater", c.x_m, c.y_m));
     LOAM_TRY(in_range("radius_m", c.radius_m, 0.1, 2000));
     LOAM_TRY(in_range("depth_m", c.depth_m, 0, 4000));
+    LOAM_TRY(in_range("age", c.age, 0, 1));
     return in_range("heat", c.heat, 0, 1);
 }
 
 Status check(const Footprint& print) {
     LOAM_TRY(place_ok("a print", print.x_m, print.y_m));
     LOAM_TRY(in_range("heading_rad", print.heading_rad, -1000, 1000));
-    LOAM_TRY(in_range("length_m", print.length_m, 0.05, 5));
-    LOAM_TRY(in_range("depth_m", print.depth_m, 0, 2));
-    if (print.foot != 0 && print.foot != 1)
-        return error("foot is {}, must be 0 (left) or 1 (right)", print.foot);
+    LOAM_TRY(in_range("length_m", print.length_m, 0.05, 50));
+    LOAM_TRY(in_range("depth_m", print.depth_m, 0, 10));
+    if (print.foot < 0 || print.foot > kFurrow)
+        return error("foot is {}, must be 0 (left), 1 (right), 2 (tyre) or 3 (furrow)", print.foot);
     return {};
 }
 
@@ -150,6 +152,7 @@ Status check_axes(std::string_view what, const glm::dvec3& center_m, const glm::
 Status check(const VolumeDecal& v) {
     LOAM_TRY(check_axes("volume", v.center_m, v.direction, v.roll_rad));
     for (int axis = 0; axis < 3; ++axis) LOAM_TRY(half_ok(v.half_m[axis], axis < 2 ? -kLargestHalf_m : 0));
+    LOAM_TRY(in_range("deep_edge", v.deep_edge, 1e-4, 1));
     return check(v.material);
 }
 
@@ -209,7 +212,49 @@ Status check(const Cutout& c) {
     return check_axes("cutout", c.center_m, c.direction, c.roll_rad);
 }
 
+Status check(const Slide& s) {
+    LOAM_TRY(place_ok("the slide", s.x_m, s.y_m));
+    LOAM_TRY(place_ok("the slide's end", s.to_m.x, s.to_m.y));
+    LOAM_TRY(in_range("radius_m", s.radius_m, 0.1, 2000));
+    LOAM_TRY(in_range("to_radius_m", s.to_radius_m, 0.1, 2000));
+    LOAM_TRY(in_range("volume_m3", s.volume_m3, 0, 1e9));
+    return in_range("way", s.way, 0, 1);
+}
+
+Status check(const Flood& f) {
+    LOAM_TRY(place_ok("the flood", f.x_m, f.y_m));
+    LOAM_TRY(in_range("radius_m", f.radius_m, 1, kLargestHalf_m));
+    LOAM_TRY(in_range("level_m", f.level_m, -kHighest_m, kHighest_m));
+    LOAM_TRY(in_range("from_m", f.from_m, -kHighest_m, kHighest_m));
+    return in_range("way", f.way, 0, 1);
+}
+
+Status check(const Event& e) {
+    LOAM_TRY(place_ok("the event", e.x_m, e.y_m));
+    if (e.to_m) LOAM_TRY(place_ok("the event's end", e.to_m->x, e.to_m->y));
+    const double length_m = e.to_m ? std::hypot(e.to_m->x - e.x_m, e.to_m->y - e.y_m) : 0;
+    LOAM_TRY(in_range("start_s", e.start_s, -kLongestTime_s, kLongestTime_s));
+    LOAM_TRY(in_range("duration_s", e.duration_s, 0, kLongestTime_s));
+    LOAM_TRY(in_range("cool_s", e.cool_s, 0, kLongestTime_s));
+    LOAM_TRY(in_range("weather_s", e.weather_s, 0, kLongestTime_s));
+    LOAM_TRY(in_range("energy_j", e.energy_j, 1e5, 1e17));
+    LOAM_TRY(in_range("count", e.count,
+                      e.kind == EventKind::crater_line || e.kind == EventKind::barrage ? 1 : 0,
+                      kMostEventParts / 2));
+    LOAM_TRY(in_range("width_m", e.width_m, 0.5, 100));
+    LOAM_TRY(in_range("volume_m3", e.volume_m3, 0, 1e9));
+    LOAM_TRY(in_range("level_m", e.level_m, -kHighest_m, kHighest_m));
+    LOAM_TRY(in_range("from_m", e.from_m, -kHighest_m, kHighest_m));
+    if (e.kind == EventKind::barrage || e.kind == EventKind::landslide || e.kind == EventKind::flood)
+        LOAM_TRY(in_range("radius_m", e.radius_m, 1, e.kind == EventKind::landslide ? 2000 : kLargestHalf_m));
+    if (e.kind == EventKind::crash && !(length_m >= e.width_m))
+        return error("the furrow of a crash is {:.2f} m long, must be at least as long as it is wide ({} m)",
+                     length_m, e.width_m);
+    return in_range("the length of the event, metres,", length_m, 0, 50'000);
+}
+
 Status check(const CraterCommand& c) {
+    LOAM_TRY(check_life(c.life));
     return check(c.crater);
 }
 
@@ -217,14 +262,20 @@ Status check(const FootprintsCommand& c) {
     if (c.prints.size() > kMaxPrints)
         return error("{} prints, the limit is {} a command", c.prints.size(), kMaxPrints);
     for (const Footprint& print : c.prints) LOAM_TRY(check(print));
-    return {};
+    return check_life(c.life);
 }
 
 Status check(const AddOperatorCommand& c) {
+    LOAM_TRY(check_life(c.life));
     return check_shape(c.shape);
 }
 
+Status check(const TimeCommand& c) {
+    return in_range("time_s", c.time_s, -kLongestTime_s, kLongestTime_s);
+}
+
 Status check(const EditOperatorCommand& c) {
+    if (c.life) LOAM_TRY(check_life(*c.life));
     return check_shape(c.shape);
 }
 
@@ -244,6 +295,25 @@ Status check(const Other&) {
 
 Status check_shape(const OperatorShape& shape) {
     return std::visit([](const auto& kind) { return check(kind); }, shape);
+}
+
+Status check_life(const Life& life) {
+    for (const auto& [name, value] : {std::pair("rise_s", life.rise_s),
+                                      {"fade_s", life.fade_s},
+                                      {"cool_s", life.cool_s},
+                                      {"weather_s", life.weather_s}})
+        LOAM_TRY(in_range(name, value, 0, kLongestTime_s));
+    const bool begins = std::isfinite(life.from_s), ends = std::isfinite(life.until_s);
+    if (begins || life.from_s > 0 || std::isnan(life.from_s))
+        LOAM_TRY(in_range("from_s", life.from_s, -kLongestTime_s, kLongestTime_s));
+    if (ends || life.until_s < 0 || std::isnan(life.until_s))
+        LOAM_TRY(in_range("until_s", life.until_s, -kLongestTime_s, kLongestTime_s));
+    if (life.from_s >= life.until_s)
+        return error("a life from {} s until {} s has no time in it", life.from_s, life.until_s);
+    if (!begins && (life.rise_s > 0 || life.cool_s > 0 || life.weather_s > 0))
+        return error("a life that rises, cools or weathers needs \"from_s\", when that begins");
+    if (!ends && life.fade_s > 0) return error("a life that fades needs \"until_s\", when that ends");
+    return {};
 }
 
 Status check_command(const Command& command) {

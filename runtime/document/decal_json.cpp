@@ -162,10 +162,39 @@ VolumeDecal read_volume(Fields& fields) {
     v.half_m = read_vector(fields, "half_m", v.half_m);
     v.direction = read_vector(fields, "direction", v.direction);
     v.roll_rad = fields.number("roll_rad", 0);
+    v.deep_edge = fields.number("deep_edge", v.deep_edge);
     v.outline = read_outline(fields);
     v.material = read_material(fields);
     return v;
 }
+
+constexpr double kRise_m = 5;  // a flood's, where only the level is given
+
+// The numbers of events by key, and which kinds have them.
+constexpr std::pair<const char*, double Event::*> kEventNumbers[] = {
+    {"energy_j", &Event::energy_j},   {"radius_m", &Event::radius_m},  {"width_m", &Event::width_m},
+    {"volume_m3", &Event::volume_m3}, {"start_s", &Event::start_s},    {"duration_s", &Event::duration_s},
+    {"cool_s", &Event::cool_s},       {"weather_s", &Event::weather_s}};
+
+bool has_end(EventKind kind) {
+    return kind == EventKind::crater_line || kind == EventKind::crash || kind == EventKind::landslide;
+}
+
+bool has(EventKind kind, std::string_view key) {
+    using enum EventKind;
+    const bool impacts = kind == crater || kind == crater_line || kind == barrage;
+    if (key == "energy_j") return impacts;
+    if (key == "cool_s" || key == "weather_s") return impacts || kind == crash;
+    if (key == "radius_m") return kind == barrage || kind == landslide || kind == flood;
+    if (key == "count") return kind == crater_line || kind == barrage || kind == crash;
+    if (key == "width_m") return kind == crash;
+    if (key == "volume_m3") return kind == landslide;
+    return true;
+}
+
+constexpr std::pair<const char*, double Life::*> kLifeNumbers[] = {
+    {"from_s", &Life::from_s}, {"until_s", &Life::until_s}, {"rise_s", &Life::rise_s},
+    {"fade_s", &Life::fade_s}, {"cool_s", &Life::cool_s},   {"weather_s", &Life::weather_s}};
 
 Stamp read_stamp(Fields& fields) {
     Stamp s;
@@ -205,6 +234,70 @@ Cutout read_cutout(Fields& fields) {
     return c;
 }
 
+Slide read_slide(Fields& fields) {
+    Slide s;
+    s.x_m = fields.number("x");
+    s.y_m = fields.number("y");
+    s.radius_m = fields.number("radius_m", s.radius_m);
+    s.to_m = read_vector<glm::dvec2>(fields, fields.need("to"), "to");
+    s.to_radius_m = fields.number("to_radius_m", s.to_radius_m);
+    s.volume_m3 = fields.number("volume_m3", s.volume_m3);
+    s.way = fields.number("way", s.way);
+    return s;
+}
+
+Flood read_flood(Fields& fields) {
+    Flood f;
+    f.x_m = fields.number("x");
+    f.y_m = fields.number("y");
+    f.radius_m = fields.number("radius_m", f.radius_m);
+    f.level_m = fields.number("level_m");
+    f.from_m = fields.number("from_m", f.level_m - kRise_m);
+    if (const Json* layer = fields.find("layer")) f.layer = fields.text_of(*layer, "layer");
+    f.way = fields.number("way", f.way);
+    return f;
+}
+
+Event read_event(Fields& fields) {
+    const std::string name = fields.text("event");
+    int kind = 0;
+    while (kind < kEventKinds && name_of(EventKind(kind)) != name) ++kind;
+    if (kind == kEventKinds) {
+        std::string known;
+        for (int i = 0; i < kEventKinds; ++i)
+            known += fmt::format("{}{}", i ? ", " : "", name_of(EventKind(i)));
+        refuse("{}: unknown event \"{}\" (known: {})", fields.place(), name, known);
+    }
+    Event e = default_event(EventKind(kind));
+    e.x_m = fields.number("x");
+    e.y_m = fields.number("y");
+    if (const Json* to = has_end(e.kind) ? fields.find("to") : nullptr)
+        e.to_m = read_vector<glm::dvec2>(fields, *to, "to");
+    else if (e.kind == EventKind::crater_line || e.kind == EventKind::crash)
+        e.to_m = read_vector<glm::dvec2>(fields, fields.need("to"), "to");
+    for (const auto& [key, member] : kEventNumbers)
+        if (has(e.kind, key)) e.*member = fields.number(key, e.*member);
+    if (has(e.kind, "count")) e.count = int(fields.whole("count", kMostEventParts, uint64_t(e.count)));
+    if (e.kind == EventKind::flood) {
+        e.level_m = fields.number("level_m");
+        e.from_m = fields.number("from_m", e.level_m - kRise_m);
+        if (const Json* layer = fields.find("layer")) e.layer = fields.text_of(*layer, "layer");
+    }
+    e.seed = uint32_t(fields.whole("seed", kMaxU32, 0));
+    return e;
+}
+
+// Keys of the object "life".
+Life read_life(Fields& fields) {
+    Life life;
+    const Json* json = fields.find("life");
+    if (!json) return life;
+    Fields of(*json, fields.place() + ": life");
+    for (const auto& [key, member] : kLifeNumbers) life.*member = of.number(key, life.*member);
+    of.finish();
+    return life;
+}
+
 void write_decal(Json& json, const TerrainDecal& d) {
     json["x"] = d.x_m;
     json["y"] = d.y_m;
@@ -228,6 +321,7 @@ void write_volume(Json& json, const VolumeDecal& v) {
     json["half_m"] = vector_json(v.half_m);
     json["direction"] = vector_json(v.direction);
     json["roll_rad"] = v.roll_rad;
+    if (v.deep_edge != VolumeDecal{}.deep_edge) json["deep_edge"] = v.deep_edge;
     json["outline"] = name_of(v.outline);
     write_material(json, v.material);
 }
@@ -247,6 +341,48 @@ void write_stamp(Json& json, const Stamp& s) {
     json["layer"] = s.layer;
     json["layer_from"] = s.layer_from;
     json["colour"] = s.colour;
+}
+
+void write_slide(Json& json, const Slide& s) {
+    json["x"] = s.x_m;
+    json["y"] = s.y_m;
+    json["radius_m"] = s.radius_m;
+    json["to"] = vector_json(s.to_m);
+    json["to_radius_m"] = s.to_radius_m;
+    json["volume_m3"] = s.volume_m3;
+    json["way"] = s.way;
+}
+
+void write_flood(Json& json, const Flood& f) {
+    json["x"] = f.x_m;
+    json["y"] = f.y_m;
+    json["radius_m"] = f.radius_m;
+    json["level_m"] = f.level_m;
+    json["from_m"] = f.from_m;
+    json["layer"] = f.layer;
+    json["way"] = f.way;
+}
+
+void write_event(Json& json, const Event& e) {
+    json["event"] = name_of(e.kind);
+    json["x"] = e.x_m;
+    json["y"] = e.y_m;
+    if (e.to_m && has_end(e.kind)) json["to"] = vector_json(*e.to_m);
+    for (const auto& [key, member] : kEventNumbers)
+        if (has(e.kind, key)) json[key] = e.*member;
+    if (has(e.kind, "count")) json["count"] = e.count;
+    if (e.kind == EventKind::flood) {
+        json["level_m"] = e.level_m;
+        json["from_m"] = e.from_m;
+        json["layer"] = e.layer;
+    }
+    json["seed"] = e.seed;
+}
+
+void write_life(Json& json, const Life& life) {
+    const Life ever;
+    for (const auto& [key, member] : kLifeNumbers)
+        if (life.*member != ever.*member) json["life"][key] = life.*member;
 }
 
 void write_cutout(Json& json, const Cutout& c) {

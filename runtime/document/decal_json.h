@@ -3,13 +3,27 @@
 #pragma once
 
 #include "runtime/document/cutout.h"
+#include "runtime/document/earth.h"
+#include "runtime/document/event.h"
 #include "runtime/document/ground_decal.h"
 #include "runtime/document/json_fields.h"
+#include "runtime/document/life.h"
 #include "runtime/document/stamp.h"
 
 namespace loam {
 
 [[nodiscard]] TerrainDecal read_decal(Fields& fields);
+[[nodiscard]] Slide read_slide(Fields& fields);
+[[nodiscard]] Flood read_flood(Fields& fields);
+[[nodiscard]] Event read_event(Fields& fields);
+void write_slide(Json& json, const Slide& slide);
+void write_flood(Json& json, const Flood& flood);
+void write_event(Json& json, const Event& event);
+
+// The object "life"; none: there at any time.
+[[nodiscard]] Life read_life(Fields& fields);
+void write_life(Json& json, const Life& life);  // nothing for one that is there at any time
+
 [[nodiscard]] SplineDecal read_spline(Fields& fields);
 [[nodiscard]] VolumeDecal read_volume(Fields& fields);
 [[nodiscard]] Stamp read_stamp(Fields& fields);

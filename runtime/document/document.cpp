@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <chrono>
+#include <cmath>
 
 #include "runtime/base/check.h"
 #include "runtime/base/log.h"
@@ -143,13 +144,19 @@ Status Document::Impl::load() {
     index = index_shape(settings);
     return pages->with_store([&](PageStore& reader) -> Status {
         LOAM_TRY(check_identity(reader, settings));
+        auto time = reader.read_meta(kTimeMeta);
+        if (!time.ok()) return time.error();
+        if (const double time_s = std::bit_cast<double>(time->value_or(0)); std::isfinite(time_s)) {
+            Dirt nothing;
+            operators.set_time(time_s, nothing);
+        }
         size_t without_picture = 0;
         std::string missing;  // of the first
         LOAM_TRY(reader.for_each_operator([&](uint64_t id, const std::string& json) -> Status {
             auto op = parse_operator(id, json);
             if (!op.ok()) return error("terrain.db: {}", op.message());
             // What is missing may come back; nothing that is saved depends on it.
-            if (const Status given = give_picture(*op); !given && without_picture++ == 0)
+            if (const Status given = give_parts(*op); !given && without_picture++ == 0)
                 missing = given.message();
             operators.set(*op);
             return {};
@@ -190,7 +197,14 @@ size_t Document::Impl::applied_count() const {
 }
 
 Document::Document(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
-Document::~Document() = default;
+
+// The time is kept as a view is: written with every change, and here; losing it loses nothing that was made.
+Document::~Document() {
+    if (impl_->mode == OpenMode::read_only) return;
+    const Status status =
+        impl_->store.write_meta(kTimeMeta, std::bit_cast<int64_t>(impl_->operators.time_s()));
+    if (!status.ok()) log(LogLevel::warning, "the time of the map was not kept: {}", status.message());
+}
 
 const std::filesystem::path& Document::folder() const {
     return impl_->folder;
@@ -300,6 +314,12 @@ std::vector<Operator> Document::operators() const {
     return impl_->operators.sorted();
 }
 
+std::optional<Operator> Document::find_operator(uint64_t id) const {
+    const ReadLock lock(impl_->mutex);
+    const Operator* op = impl_->operators.find(id);
+    return op ? std::optional(*op) : std::nullopt;
+}
+
 ResolvedRoles Document::roles() const {
     const auto resolved = [&](const std::string& name) { return uint16_t(std::max(0, layer_index(name))); };
     return {resolved(impl_->settings.roles.scorched), resolved(impl_->settings.roles.broken)};
@@ -319,6 +339,19 @@ int Document::layer_index(std::string_view name) const {
     for (size_t i = 0; i < layers.size(); ++i)
         if (layers[i].name == name) return int(i);
     return -1;
+}
+
+double Document::time_s() const {
+    const ReadLock lock(impl_->mutex);
+    return impl_->operators.time_s();
+}
+
+Document::EventCost Document::event_cost(uint64_t id) const {
+    const ReadLock lock(impl_->mutex);
+    const Operator* op = impl_->operators.find(id);
+    if (!op) return {};
+    const auto cost = impl_->operators.cost_of(id);
+    return {operator_json(*op).size(), cost.parts, cost.bytes};
 }
 
 Document::Statistics Document::statistics() const {

@@ -1,6 +1,6 @@
 // The Document: base maps, operators, journal. The only way to change it is `apply`; everybody else reads.
 //
-// Invariants
+// Invariants (but for the time, which is a way of looking, not a change)
 //  1. A command is one transaction of terrain.db: after a crash every command whose `apply` returned is
 //  there, and
 //     nothing half-done.
@@ -63,6 +63,9 @@ class Document {
     [[nodiscard]] const ProjectSettings& settings() const;
     [[nodiscard]] WorldRect bounds() const { return settings().bounds(); }
     [[nodiscard]] uint64_t revision() const;  // grows with every change
+    // Operators with a life and events are shown as they are at this time; TimeCommand moves it. In seconds,
+    // kept with the project.
+    [[nodiscard]] double time_s() const;
 
     // Undo and redo commands are applied by `apply` as well.
     Result<Dirt> apply(const Command& command);
@@ -104,9 +107,17 @@ class Document {
     void operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const;
     void operators_over_cutout(const WorldRect& rect, std::vector<const Operator*>& out) const;
     [[nodiscard]] std::vector<Operator> operators() const;  // a copy, in order (outliner, info)
+    [[nodiscard]] std::optional<Operator> find_operator(uint64_t id) const;
     [[nodiscard]] ResolvedRoles roles() const;
     [[nodiscard]] std::vector<std::string> stamps() const;       // in the project's folder, sorted
     [[nodiscard]] int layer_index(std::string_view name) const;  // -1: no such layer
+
+    struct EventCost {
+        size_t stored_bytes = 0;  // the parameters, in terrain.db
+        size_t parts = 0;         // that they stand for
+        size_t memory_bytes = 0;  // of the parts while the project is open
+    };
+    [[nodiscard]] EventCost event_cost(uint64_t id) const;
 
     struct Statistics {
         uint64_t height_pages = 0, index_pages = 0, database_bytes = 0, operators = 0, commands = 0;

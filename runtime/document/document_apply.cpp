@@ -1,6 +1,9 @@
 // Commands: compute on copies, one transaction, then show it. Undo and redo: the same swap of rows and
 // images.
 #include <algorithm>
+#include <bit>
+
+#include <glm/geometric.hpp>
 
 #include "runtime/base/log.h"
 #include "runtime/document/dirt.h"
@@ -8,6 +11,7 @@
 #include "runtime/document/operator_json.h"
 #include "runtime/document/paint.h"
 #include "runtime/document/sculpt.h"
+#include "runtime/document/slope.h"
 #include "runtime/document/transitions.h"
 
 namespace loam {
@@ -112,7 +116,7 @@ void Document::Impl::change_operator(uint64_t id, std::optional<Operator> op, Ch
     if (op) {
         prepare(*op);
         // A stamp whose picture is gone can still be moved, switched and removed.
-        (void)give_picture(*op);
+        (void)give_parts(*op);
     }
     RowImage image{RowImage::Kind::op, int64_t(id), std::nullopt};
     if (op) {
@@ -120,35 +124,61 @@ void Document::Impl::change_operator(uint64_t id, std::optional<Operator> op, Ch
         image.bytes.emplace(json.begin(), json.end());
     }
     change.images.push_back(std::move(image));
-    // Moved or switched: where it was and where it is.
-    const Operator* before = operators.find(id);
-    const Operator* after = op ? &*op : nullptr;
-    for (const Operator* state : {before, after}) {
-        if (!state || (!state->enabled && !(before && before->enabled))) continue;
-        const auto append = [](std::vector<WorldRect>& to, const std::vector<WorldRect>& rects) {
-            to.insert(to.end(), rects.begin(), rects.end());
-        };
-        append(change.dirt.height, state->height_rects());
-        change.dirt.index.push_back(state->index_bounds());
-        append(change.dirt.texture, state->texture_rects());
-        append(change.dirt.cutout, state->cutout_rects());
-        change.dirt.texture_size_m = std::max(change.dirt.texture_size_m, state->texture_size_m());
-    }
     change.operators[id] = std::move(op);
 }
 
-Status Document::Impl::give_picture(Operator& op) {
+namespace {
+
+// The layer that an operator lays, by name, and where its number is kept.
+struct LaidLayer {
+    const std::string* name = nullptr;
+    uint16_t* number = nullptr;
+};
+LaidLayer laid_layer(OperatorShape& shape) {
+    if (auto* stamp = std::get_if<Stamp>(&shape)) return {&stamp->layer, &stamp->layer_number};
+    if (auto* flood = std::get_if<Flood>(&shape)) return {&flood->layer, &flood->layer_number};
+    if (auto* event = std::get_if<Event>(&shape)) return {&event->layer, &event->layer_number};
+    return {};
+}
+
+}  // namespace
+
+Status Document::Impl::give_parts(Operator& op) {
+    if (const LaidLayer laid = laid_layer(op.shape); laid.name && !laid.name->empty()) {
+        const auto number = layer_number(*laid.name);
+        if (!number.ok()) return number.error();
+        *laid.number = *number;
+    }
     auto* stamp = std::get_if<Stamp>(&op.shape);
     if (!stamp) return {};
-    if (!stamp->layer.empty()) {
-        const auto number = layer_number(stamp->layer);
-        if (!number.ok()) return number.error();
-        stamp->layer_number = *number;
-    }
     auto picture = stamps->find(stamp->image);
     if (!picture.ok()) return picture.error();
     stamp->picture = std::move(*picture);
     return {};
+}
+
+// Steepest descent of the base map's ground, at the scale of the scar, until it levels out.
+Result<glm::dvec2> Document::Impl::run_out(const Event& landslide) {
+    constexpr double kLevel = 0.08;  // a tangent: six parts in eighty metres
+    SlopeReader ground(*pages, height, settings.default_height_mm);
+    const double step_m = landslide.radius_m;
+    glm::dvec2 at(landslide.x_m, landslide.y_m);
+    for (int step = 0; step < 16; ++step) {
+        double around_m[4];
+        constexpr glm::dvec2 kTo[4] = {{1, 0}, {-1, 0}, {0, 1}, {0, -1}};
+        for (int i = 0; i < 4; ++i) {
+            const glm::dvec2 place = at + step_m * kTo[i];
+            const auto height_m = ground.height_m(place.x, place.y);
+            if (!height_m.ok()) return height_m.error();
+            around_m[i] = *height_m;
+        }
+        const glm::dvec2 down(around_m[1] - around_m[0], around_m[3] - around_m[2]);
+        const double tangent = glm::length(down) / (2 * step_m);
+        if (!(tangent > 0)) break;
+        at += step_m * glm::normalize(down);
+        if (tangent < kLevel) break;
+    }
+    return at;
 }
 
 Status Document::Impl::known_layer(const std::string& name) const {
@@ -167,6 +197,10 @@ Status Document::Impl::known_parts(const OperatorShape& shape) const {
         const auto picture = stamps->find(stamp->image);
         return picture.ok() ? Status() : picture.error();
     }
+    for (const std::string* layer :
+         {std::holds_alternative<Flood>(shape) ? &std::get<Flood>(shape).layer : nullptr,
+          std::holds_alternative<Event>(shape) ? &std::get<Event>(shape).layer : nullptr})
+        if (layer && !layer->empty()) return known_layer(*layer);
     const DecalMaterial* material = material_of(shape);
     if (!material || material->layer.empty()) return {};
     LOAM_TRY(known_layer(material->layer));
@@ -180,24 +214,41 @@ Status Document::Impl::known_parts(const OperatorShape& shape) const {
     return {};
 }
 
-Status Document::Impl::compute(const CraterCommand& command, Change& change) {
+void Document::Impl::add_operator(OperatorShape shape, const Life& life, Change& change) {
     const uint64_t id = change.next_operator++;
-    change_operator(id, Operator{.id = id, .order = id, .enabled = true, .shape = command.crater}, change);
+    change_operator(id, Operator{.id = id, .order = id, .shape = std::move(shape), .life = life}, change);
+}
+
+Status Document::Impl::compute(const CraterCommand& command, Change& change) {
+    add_operator(command.crater, command.life, change);
     return {};
 }
 
 Status Document::Impl::compute(const FootprintsCommand& command, Change& change) {
-    for (const Footprint& print : command.prints) {
-        const uint64_t id = change.next_operator++;
-        change_operator(id, Operator{.id = id, .order = id, .enabled = true, .shape = print}, change);
-    }
+    for (const Footprint& print : command.prints) add_operator(print, command.life, change);
+    if (command.keep == 0) return {};
+    const auto& passing = operators.passing_prints();
+    const size_t ending = command.life.until_s < Life::kEver_s ? command.prints.size() : 0;
+    size_t many = passing.size() + ending;
+    for (auto oldest = passing.begin(); many > command.keep && oldest != passing.end(); ++oldest, --many)
+        change_operator(*oldest, std::nullopt, change);
+    return {};
+}
+
+Status Document::Impl::complete(OperatorShape& shape) {
+    auto* event = std::get_if<Event>(&shape);
+    if (!event || event->kind != EventKind::landslide || event->to_m) return {};
+    const auto end = run_out(*event);
+    if (!end.ok()) return end.error();
+    event->to_m = *end;
     return {};
 }
 
 Status Document::Impl::compute(const AddOperatorCommand& command, Change& change) {
     LOAM_TRY(known_parts(command.shape));
-    const uint64_t id = change.next_operator++;
-    change_operator(id, Operator{.id = id, .order = id, .enabled = true, .shape = command.shape}, change);
+    OperatorShape shape = command.shape;
+    LOAM_TRY(complete(shape));
+    add_operator(std::move(shape), command.life, change);
     return {};
 }
 
@@ -207,6 +258,9 @@ Status Document::Impl::compute(const EditOperatorCommand& command, Change& chang
     LOAM_TRY(known_parts(command.shape));
     Operator edited = *op;
     edited.shape = command.shape;
+    LOAM_TRY(complete(edited.shape));
+    if (command.life) edited.life = *command.life;
+    if (std::holds_alternative<Event>(edited.shape)) edited.life = {};  // its parts have their own
     change_operator(command.id, std::move(edited), change);
     return {};
 }
@@ -276,8 +330,39 @@ Status Document::Impl::write_change(Change& change, const JournalRow& row_head, 
         LOAM_TRY(store.write_meta("next_operator", int64_t(change.next_operator)));
     if (balance.height != before.height) LOAM_TRY(store.write_meta("height_pages", balance.height));
     if (balance.index != before.index) LOAM_TRY(store.write_meta("index_pages", balance.index));
+    LOAM_TRY(store.write_meta(kTimeMeta, std::bit_cast<int64_t>(operators.time_s())));
     page_count = balance;
     return {};
+}
+
+void Document::Impl::follow_heights(Dirt& dirt) const {
+    std::vector<const Operator*> found;
+    for (const WorldRect& rect : dirt.height) {
+        operators.over_index().query(rect, found);
+        for (const Operator* op : found)
+            if (const auto* flood = std::get_if<Flood>(&op->shape))
+                dirt.index.push_back(intersected(rect, bounds_of(*flood)));
+    }
+}
+
+void Document::Impl::show_operators(Change& change) {
+    for (const auto& [id, op] : change.operators) {
+        operators.add_shown(id, change.dirt);
+        op ? operators.set(*op) : operators.remove(id);
+        operators.add_shown(id, change.dirt);
+    }
+    follow_heights(change.dirt);
+}
+
+Result<Dirt> Document::Impl::set_time(double time_s) {
+    Dirt dirt;
+    if (time_s != operators.time_s()) {
+        const Exclusive exclusive(*this);
+        operators.set_time(time_s, dirt);
+        follow_heights(dirt);
+    }
+    merge_dirt(dirt, kMaxOperatorRects);
+    return dirt;
 }
 
 Result<Dirt> Document::Impl::commit_change(Change& change, const Command& command) {
@@ -298,13 +383,14 @@ Result<Dirt> Document::Impl::commit_change(Change& change, const Command& comman
             if (change.settings) settings = std::move(*change.settings);
             if (change.heights) change.heights->publish(change.height_changes);
             if (change.texels) change.texels->publish(change.index_changes);
-            for (const auto& [id, op] : change.operators) op ? operators.set(*op) : operators.remove(id);
+            show_operators(change);
             heads.resize(applied_count());
             heads.push_back({row.sequence, row.group, true});
             next_sequence = row.sequence + 1;
             next_operator = change.next_operator;
             next_group = std::max(next_group, row.group + 1);
             ++revision;
+            merge_dirt(change.dirt, kMaxOperatorRects);
             return std::move(change.dirt);
         }
         take_back_settings(change);
@@ -339,7 +425,7 @@ Status Document::Impl::write_swaps(size_t first, size_t end, bool applied, Chang
                                {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()});
             if (!parsed.ok()) return error("the journal: {}", parsed.message());
             op = *parsed;
-            if (const Status given = give_picture(*op); !given)
+            if (const Status given = give_parts(*op); !given)
                 log(LogLevel::warning, "operator {} shows nothing: {}", image.key, given.message());
         }
         auto dirt = dirt_of(row->dirt);
@@ -368,7 +454,7 @@ Result<Dirt> Document::Impl::swap_commands(size_t first, size_t end, bool applie
         if (status.ok()) {
             if (change.settings) settings = std::move(*change.settings);
             for (const PageChange& page : change.height_changes) pages->forget(page.key);
-            for (const auto& [id, op] : change.operators) op ? operators.set(*op) : operators.remove(id);
+            show_operators(change);
             for (size_t i = first; i < end; ++i) heads[i].applied = applied;
             page_count = balance;
             ++revision;
@@ -390,8 +476,9 @@ void Document::Impl::tidy_log() {
 Result<Dirt> Document::apply(const Command& command) {
     if (std::holds_alternative<UndoCommand>(command.body)) return undo();
     if (std::holds_alternative<RedoCommand>(command.body)) return redo();
-    LOAM_TRY(impl_->may_write());
     LOAM_TRY(check_command(command));
+    if (const auto* time = std::get_if<TimeCommand>(&command.body)) return impl_->set_time(time->time_s);
+    LOAM_TRY(impl_->may_write());
     Impl::Change change;
     change.next_operator = impl_->next_operator;
     LOAM_TRY(std::visit([&](const auto& body) { return impl_->compute(body, change); }, command.body));

@@ -27,6 +27,7 @@
 namespace loam {
 
 inline constexpr size_t kPageCacheBytes = size_t(256) << 20;
+inline constexpr const char* kTimeMeta = "time_s";  // bits of a double
 inline constexpr size_t kMaxStrokeRects = 8, kMaxOperatorRects = 64;
 
 // terrain.db's copy of what its pages were made with.
@@ -74,11 +75,11 @@ struct Document::Impl {
     // --- commands (document_apply.cpp) ---
     struct Change {
         std::vector<RowImage> images;  // new rows; after the swap, the old ones
-        std::map<uint64_t, std::optional<Operator>> operators;
+        std::map<uint64_t, std::optional<Operator>> operators;  // their new states
         std::optional<PageEdits<int32_t>> heights;
         std::optional<PageEdits<IndexTexel>> texels;
         std::vector<PageChange> height_changes, index_changes;
-        Dirt dirt;
+        Dirt dirt;  // of the base maps; what operators show depends on the time
         uint64_t next_operator = 0;
         std::optional<ProjectSettings> settings;  // the transitions' change
     };
@@ -96,15 +97,25 @@ struct Document::Impl {
     Status compute(const SetOperatorCommand& command, Change& change);
     Status compute(const RemoveOperatorCommand& command, Change& change);
     Status compute(const TransitionCommand& command, Change& change);
+    Status compute(const TimeCommand&, Change&) { return error("the time is not a command of the journal"); }
     Status compute(const UndoCommand&, Change&) { return error("undo is not a command of the journal"); }
     Status compute(const RedoCommand&, Change&) { return error("redo is not a command of the journal"); }
     void change_operator(uint64_t id, std::optional<Operator> op, Change& change);
+    void add_operator(OperatorShape shape, const Life& life, Change& change);
     [[nodiscard]] Status known_layer(const std::string& name) const;
     [[nodiscard]] Status known_parts(
         const OperatorShape& shape) const;  // the layer and picture it is made of
-    // A stamp's picture and its layer's number; an error leaves it without.
-    Status give_picture(Operator& op);
+    // A stamp's picture and the number of a layer that is laid; an error leaves it without.
+    Status give_parts(Operator& op);
+    Status complete(OperatorShape& shape);  // what a command may leave to the document
+    // Where a landslide without an end runs to.
+    [[nodiscard]] Result<glm::dvec2> run_out(const Event& landslide);
+    // The index follows the ground where a flood lies on it.
+    void follow_heights(Dirt& dirt) const;
+    Result<Dirt> set_time(double time_s);
     Status write_change(Change& change, const JournalRow& row, const PageBalance& before);
+    // Under the exclusive lock: the operators' new states, and where they show or did.
+    void show_operators(Change& change);
     Result<Dirt> commit_change(Change& change, const Command& command);
     // Swaps the rows of the journal heads [first, end), the direction that `applied` names, in one
     // transaction.

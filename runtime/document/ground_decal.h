@@ -77,6 +77,7 @@ struct VolumeDecal {
     double roll_rad = 0;             // around the direction
     DecalOutline outline = DecalOutline::rectangle;
     DecalMaterial material;
+    double deep_edge = 0.2;  // share of z's half size over which it fades, 0.0001 … 1
     bool operator==(const VolumeDecal&) const = default;
 };
 

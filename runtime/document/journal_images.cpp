@@ -53,6 +53,7 @@ Status swap_transition(SettingsEdit& settings, RowImage& image) {
         if (!entry.ok()) return error("the journal: {}", entry.message());
         if (place == layers.size()) layers.emplace_back();
         layers[place] = std::move(*entry);
+        if (layers[place].blend->removed) layers[place].name = name_of_removed(*settings.changed, place);
     } else if (place < layers.size() && !layers[place].blend->removed) {
         const auto removed = remove_transition(*settings.changed, layers[place].name);
         if (!removed.ok()) return removed.error();

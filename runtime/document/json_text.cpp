@@ -83,6 +83,7 @@ Crater read_crater(Fields& fields) {
     crater.depth_m = fields.number("depth_m", crater.depth_m);
     crater.seed = uint32_t(fields.whole("seed", kMaxU32, 0));
     crater.heat = fields.number("heat", crater.heat);
+    crater.age = fields.number("age", crater.age);
     return crater;
 }
 
@@ -92,7 +93,8 @@ void write_crater(Json& json, const Crater& crater) {
     json["radius_m"] = crater.radius_m;
     json["depth_m"] = crater.depth_m;
     json["seed"] = crater.seed;
-    if (crater.heat != 0) json["heat"] = crater.heat; // a cold crater reads as it always has
+    if (crater.heat != 0) json["heat"] = crater.heat;  // a cold crater reads as it always has
+    if (crater.age != 0) json["age"] = crater.age;     // and a fresh one
 }
 
 // What a print does not say itself comes from `shared`.
@@ -101,7 +103,7 @@ Footprint read_print(Fields& fields, const Footprint& shared) {
     print.x_m = fields.number("x");
     print.y_m = fields.number("y");
     print.heading_rad = fields.number("heading_rad", 0);
-    print.foot = int(fields.whole("foot", 1, 0));
+    print.foot = int(fields.whole("foot", kFurrow, 0));
     print.length_m = fields.number("length_m", shared.length_m);
     print.depth_m = fields.number("depth_m", shared.depth_m);
     print.seed = uint32_t(fields.whole("seed", kMaxU32, shared.seed));
@@ -127,6 +129,8 @@ FootprintsCommand read_footprints(Fields& fields) {
         print.finish();
         ++shared.seed;
     }
+    c.life = read_life(fields);
+    c.keep = fields.whole("keep", kMaxId, 0);
     return c;
 }
 
@@ -176,6 +180,7 @@ void write(Json& json, const FillCommand& c) {
 void write(Json& json, const CraterCommand& c) {
     json["cmd"] = "crater";
     write_crater(json, c.crater);
+    write_life(json, c.life);
 }
 
 void write(Json& json, const FootprintsCommand& c) {
@@ -193,6 +198,8 @@ void write(Json& json, const FootprintsCommand& c) {
         if (print.seed != shared.seed) one["seed"] = print.seed;
         ++shared.seed;
     }
+    write_life(json, c.life);
+    if (c.keep != 0) json["keep"] = c.keep;
 }
 
 void write(Json& json, const SetOperatorCommand& c) {
@@ -221,6 +228,10 @@ TransitionCommand read_transition(Fields& fields) {
     c.remove = fields.truth("remove", false);
     return c;
 }
+void write(Json& json, const TimeCommand& c) {
+    json["cmd"] = "time";
+    json["time_s"] = c.time_s;
+}
 void write(Json& json, const UndoCommand&) {
     json["cmd"] = "undo";
 }
@@ -236,8 +247,14 @@ OperatorShape read_shape(const std::string& kind, Fields& fields) {
     if (kind == "volume") return read_volume(fields);
     if (kind == "stamp") return read_stamp(fields);
     if (kind == "cutout") return read_cutout(fields);
-    refuse("{}: unknown kind \"{}\" (known: crater, footprint, decal, spline, volume, stamp, cutout)",
-           fields.place(), kind);
+    if (kind == "slide") return read_slide(fields);
+    if (kind == "flood") return read_flood(fields);
+    if (kind == "event") return read_event(fields);
+    refuse(
+        "{}: unknown kind \"{}\" (known: crater, footprint, decal, spline, volume, stamp, cutout, slide, "
+        "flood, "
+        "event)",
+        fields.place(), kind);
 }
 
 // Its kind's name; its parameters go into `json`.
@@ -274,15 +291,31 @@ struct ShapeWriter {
         write_cutout(json, cutout);
         return "cutout";
     }
+    const char* operator()(const Slide& slide) const {
+        write_slide(json, slide);
+        return "slide";
+    }
+    const char* operator()(const Flood& flood) const {
+        write_flood(json, flood);
+        return "flood";
+    }
+    const char* operator()(const Event& event) const {
+        write_event(json, event);
+        return "event";
+    }
 };
 
 void write(Json& json, const AddOperatorCommand& c) {
     json["cmd"] = std::visit(ShapeWriter{json}, c.shape);
+    write_life(json, c.life);
 }
 void write(Json& json, const EditOperatorCommand& c) {
     json["kind"] = std::visit(ShapeWriter{json}, c.shape);
     json["cmd"] = "edit";
     json["id"] = c.id;
+    if (!c.life) return;
+    write_life(json, *c.life);
+    if (c.life->ever()) json["life"] = Json::object();
 }
 void write(Json& json, const ReorderCommand& c) {
     json["cmd"] = "reorder";
@@ -294,14 +327,24 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "sculpt") return read_sculpt(fields);
     if (name == "paint") return read_paint(fields);
     if (name == "fill") return read_fill(fields);
-    if (name == "crater") return CraterCommand{read_crater(fields)};
+    if (name == "crater") {
+        const Crater crater = read_crater(fields);
+        return CraterCommand{crater, read_life(fields)};
+    }
     if (name == "footprints") return read_footprints(fields);
-    if (name == "decal" || name == "spline" || name == "volume" || name == "stamp" || name == "cutout")
-        return AddOperatorCommand{read_shape(name, fields)};
+    if (name == "event") return AddOperatorCommand{read_event(fields)};  // its parts have lives
+    for (const char* kind : {"decal", "spline", "volume", "stamp", "cutout", "slide", "flood"}) {
+        if (name != kind) continue;
+        OperatorShape shape = read_shape(name, fields);
+        return AddOperatorCommand{std::move(shape), read_life(fields)};
+    }
     if (name == "edit") {
         const uint64_t id = fields.whole("id", kMaxId);
-        return EditOperatorCommand{id, read_shape(fields.text("kind"), fields)};
+        EditOperatorCommand edit{id, read_shape(fields.text("kind"), fields)};
+        if (!std::holds_alternative<Event>(edit.shape) && fields.find("life")) edit.life = read_life(fields);
+        return edit;
     }
+    if (name == "time") return TimeCommand{fields.number("time_s")};
     if (name == "reorder") {
         const uint64_t id = fields.whole("id", kMaxId);
         return ReorderCommand{id, fields.whole("order", kMaxId)};
@@ -318,7 +361,7 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "redo") return RedoCommand{};
     refuse(
         "unknown command \"{}\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-        "stamp, cutout, edit, reorder, operator, remove, transition, undo, redo)",
+        "stamp, cutout, slide, flood, event, edit, reorder, operator, remove, transition, time, undo, redo)",
         name);
 }
 
@@ -394,6 +437,7 @@ std::string operator_json(const Operator& op) {
     json["order"] = op.order;
     json["enabled"] = op.enabled;
     json["kind"] = std::visit(ShapeWriter{json}, op.shape);
+    write_life(json, op.life);
     return dump(json);
 }
 
@@ -406,11 +450,13 @@ Result<Operator> parse_operator(uint64_t id, std::string_view text) {
         result.enabled = fields.truth("enabled");
         const std::string kind = fields.text("kind");
         result.shape = read_shape(kind, fields);
+        if (!std::holds_alternative<Event>(result.shape)) result.life = read_life(fields);
         fields.finish();
         return result;
     });
     if (!op.ok()) return op;
-    const Status status = check_shape(op->shape);
+    Status status = check_shape(op->shape);
+    if (status.ok()) status = check_life(op->life);
     if (!status.ok()) return error("operator {}: {}", id, status.message());
     prepare(*op);
     return op;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <tuple>
 
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -13,6 +15,8 @@
 #include "shaders/document/footprint_math.h"
 
 namespace loam {
+
+static_assert(kTyre == kFootTyre && kFurrow == kFootFurrow);
 
 namespace {
 
@@ -79,7 +83,8 @@ void apply_crater_height(const Crater& crater, const WorldRect& rect, const Samp
     const float depth = float(depth_of(crater) / crater.radius_m);
     for_each_sample(heights, rect, crater.x_m, crater.y_m, [&](double& height, double dx, double dy) {
         const vec2 local(float(dx / crater.radius_m), float(dy / crater.radius_m));
-        height += crater.radius_m * double(shared::crater_height(local, depth, crater.seed));
+        height +=
+            crater.radius_m * double(shared::crater_height(local, depth, crater.seed, float(crater.age)));
     });
 }
 
@@ -177,10 +182,12 @@ void apply_crater_index(const Crater& crater, const WorldRect& rect, const Resol
                         const SampleGrid<IndexTexel>& texels) {
     for_each_sample(texels, rect, crater.x_m, crater.y_m, [&](IndexTexel& texel, double dx, double dy) {
         const vec2 local(float(dx / crater.radius_m), float(dy / crater.radius_m));
-        const int zone = shared::crater_zone(local, crater.seed);
+        const float age = float(crater.age), strength = float(crater.strength);
+        // A layer has no half measures: it comes with half of the crater.
+        const int zone = strength < 0.5f ? 0 : shared::crater_zone(local, crater.seed, age);
         if (zone != 0) texel.layer = zone == 1 ? roles.scorched : roles.broken;
-        const float factor = (1.0f - 0.62f * shared::crater_scorch(local, crater.seed)) *
-                             (1.0f - 0.3f * shared::crater_rays(local, crater.seed));
+        const float factor = (1.0f - 0.62f * strength * shared::crater_scorch(local, crater.seed, age)) *
+                             (1.0f - 0.3f * strength * shared::crater_rays(local, crater.seed, age));
         for (uint8_t& channel : texel.tint) channel = scaled(channel, factor);
     });
 }
@@ -199,6 +206,65 @@ void apply_stamp_index(const Stamp& stamp, const WorldRect& rect, const SampleGr
     });
 }
 
+WorldRect disc_rect(glm::dvec2 at_m, double radius_m) {
+    return square(at_m.x, at_m.y, radius_m);
+}
+
+// Calls visit(sample, share of the hollow's or heap's height there) within a disc.
+template <typename T, typename Visit>
+void for_each_in_lump(const SampleGrid<T>& grid, glm::dvec2 at_m, double radius_m, Visit&& visit) {
+    for_each_sample(grid, disc_rect(at_m, radius_m), at_m.x, at_m.y, [&](T& sample, double dx, double dy) {
+        const double rest = 1 - (dx * dx + dy * dy) / (radius_m * radius_m);
+        if (rest > 0) visit(sample, rest * rest * rest);
+    });
+}
+
+double lump_height_m(double volume_m3, double radius_m) {
+    return 4 * volume_m3 / (std::numbers::pi * radius_m * radius_m);
+}
+
+bool changes_anything(const Slide& slide) {
+    return slide.way > 0 && slide.volume_m3 > 0;
+}
+
+void apply_slide_height(const Slide& slide, const SampleGrid<double>& heights_m) {
+    const auto lay = [&](glm::dvec2 at_m, double radius_m, double volume_m3) {
+        const double high_m = lump_height_m(volume_m3, radius_m);
+        for_each_in_lump(heights_m, at_m, radius_m,
+                         [&](double& height, double share) { height += high_m * share; });
+    };
+    lay({slide.x_m, slide.y_m}, slide.radius_m, -slide.volume_m3);
+    lay(place_of(slide), radius_of(slide), slide.volume_m3);
+}
+
+// Bare where more than a tenth of the lump's height went or came.
+void apply_slide_index(const Slide& slide, const ResolvedRoles& roles, const SampleGrid<IndexTexel>& texels) {
+    const auto lay = [&](glm::dvec2 at_m, double radius_m) {
+        for_each_in_lump(texels, at_m, radius_m, [&](IndexTexel& texel, double share) {
+            if (share > 0.1) texel.layer = roles.broken;
+        });
+    };
+    lay({slide.x_m, slide.y_m}, slide.radius_m);
+    lay(place_of(slide), radius_of(slide));
+}
+
+void apply_flood_index(const Flood& flood, const SampleGrid<IndexTexel>& texels,
+                       std::span<const double> ground_m) {
+    LOAM_CHECK(ground_m.size() == size_t(texels.width) * size_t(texels.height),
+               "a flood needs the ground under the texels");
+    const double level_m = height_of(flood);
+    for_each_sample(
+        texels, bounds_of(flood), flood.x_m, flood.y_m, [&](IndexTexel& texel, double dx, double dy) {
+            const ptrdiff_t at = &texel - texels.data;
+            const double below_m =
+                level_m - ground_m[size_t(at / texels.stride * texels.width + at % texels.stride)];
+            if (below_m <= 0 || dx * dx + dy * dy > flood.radius_m * flood.radius_m) return;
+            if (!flood.layer.empty()) texel.layer = flood.layer_number;
+            const float factor = float(1 - 0.35 * ramp(std::min(below_m / kFloodShore_m, 1.0)));
+            for (uint8_t& channel : texel.tint) channel = scaled(channel, factor);
+        });
+}
+
 // What an operator does to each map, a set of overloads a kind.
 struct HeightRects {
     using Rects = std::vector<WorldRect>;
@@ -213,6 +279,25 @@ struct HeightRects {
     Rects operator()(const VolumeDecal&) const { return {}; }
     Rects operator()(const Stamp& s) const { return changes_heights(s) ? Rects{box_of(s)} : Rects{}; }
     Rects operator()(const Cutout&) const { return {}; }
+    Rects operator()(const Slide& s) const {
+        return changes_anything(s) ? Rects{hollow_of(s), heap_of(s)} : Rects{};
+    }
+    Rects operator()(const Flood&) const { return {}; }
+    Rects operator()(const Event&) const { return {}; }
+};
+
+struct IndexRects {
+    using Rects = std::vector<WorldRect>;
+    Rects operator()(const Crater& c) const {
+        return {square(c.x_m, c.y_m, c.radius_m * double(kCraterMarkReach))};
+    }
+    Rects operator()(const Stamp& s) const { return changes_index(s) ? Rects{box_of(s)} : Rects{}; }
+    Rects operator()(const Slide& s) const { return HeightRects{}(s); }
+    Rects operator()(const Flood& f) const { return {bounds_of(f)}; }
+    template <typename Other>
+    Rects operator()(const Other&) const {
+        return {};
+    }
 };
 
 struct TextureRects {
@@ -233,6 +318,9 @@ struct TextureRects {
     }
     Rects operator()(const Stamp&) const { return {}; }
     Rects operator()(const Cutout&) const { return {}; }
+    Rects operator()(const Slide&) const { return {}; }
+    Rects operator()(const Flood& f) const { return {bounds_of(f)}; }
+    Rects operator()(const Event&) const { return {}; }
 };
 
 struct ApplyHeight {
@@ -245,6 +333,11 @@ struct ApplyHeight {
     void operator()(const TerrainDecal&) const {}
     void operator()(const VolumeDecal&) const {}
     void operator()(const Cutout&) const {}
+    void operator()(const Flood&) const {}
+    void operator()(const Event&) const {}
+    void operator()(const Slide& s) const {
+        if (changes_anything(s)) apply_slide_height(s, heights_m);
+    }
     void operator()(const Stamp& s) const {
         if (!changes_heights(s)) return;
         const StampSampler at(s);
@@ -253,7 +346,71 @@ struct ApplyHeight {
     }
 };
 
+// An operator's shape in a state of its life, a call a kind.
+struct InState {
+    const LifeState& state;
+    void operator()(Crater& c) const {
+        if (state.strength != 1) c.depth_m = depth_of(c) * state.strength;
+        c.heat *= state.heat * state.strength;
+        c.age = 1 - (1 - c.age) * (1 - state.age);
+        c.strength *= state.strength;
+    }
+    void operator()(Footprint& f) const {
+        f.depth_m *= state.strength;
+        f.strength *= state.strength;
+    }
+    void operator()(TerrainDecal& d) const { d.material.opacity *= state.strength; }
+    void operator()(SplineDecal& s) const {
+        s.material.opacity *= state.strength;
+        s.carve *= state.strength;
+    }
+    void operator()(VolumeDecal& v) const { v.material.opacity *= state.strength; }
+    void operator()(Stamp& s) const { s.strength *= state.strength; }
+    void operator()(Slide& s) const { s.way *= state.strength; }
+    void operator()(Flood& f) const { f.way *= state.strength; }
+    void operator()(Cutout&) const {}
+    void operator()(Event&) const {}
+};
+
 }  // namespace
+
+OperatorShape shape_in(const OperatorShape& shape, const LifeState& state) {
+    OperatorShape shown = shape;
+    std::visit(InState{state}, shown);
+    return shown;
+}
+
+glm::dvec2 place_of(const Slide& slide) {
+    const glm::dvec2 from(slide.x_m, slide.y_m);
+    return from + (slide.to_m - from) * ramp(slide.way);
+}
+double radius_of(const Slide& slide) {
+    return slide.radius_m + (slide.to_radius_m - slide.radius_m) * ramp(slide.way);
+}
+WorldRect hollow_of(const Slide& slide) {
+    return square(slide.x_m, slide.y_m, slide.radius_m);
+}
+WorldRect heap_of(const Slide& slide) {
+    return disc_rect(place_of(slide), radius_of(slide));
+}
+
+double height_of(const Flood& flood) {
+    return flood.from_m + (flood.level_m - flood.from_m) * flood.way;
+}
+WorldRect bounds_of(const Flood& flood) {
+    return square(flood.x_m, flood.y_m, flood.radius_m);
+}
+VolumeDecal surface_of(const Flood& flood) {
+    constexpr double kDeep_m = 500;
+    VolumeDecal volume;
+    volume.center_m = {flood.x_m, flood.y_m, height_of(flood) - kDeep_m};
+    volume.half_m = {flood.radius_m, flood.radius_m, kDeep_m};
+    volume.deep_edge = kFloodShore_m / kDeep_m;
+    volume.outline = DecalOutline::ellipse;
+    volume.material = {.colour = {0.3, 0.31, 0.29}, .gloss = 0.85, .opacity = 0.5, .edge = 0};
+    volume.material.channels.normal = 0.7;
+    return volume;
+}
 
 const DecalMaterial* material_of(const OperatorShape& shape) {
     if (const auto* decal = std::get_if<TerrainDecal>(&shape)) return &decal->material;
@@ -307,6 +464,15 @@ double size_m(const Stamp&) {
 double size_m(const Cutout&) {
     return 0;
 }
+double size_m(const Slide&) {
+    return 0;
+}
+double size_m(const Flood& flood) {
+    return 2 * flood.radius_m;
+}
+double size_m(const Event&) {
+    return 0;
+}
 
 void prepare(Operator& op) {
     if (auto* spline = std::get_if<SplineDecal>(&op.shape))
@@ -330,11 +496,12 @@ WorldRect Operator::height_bounds() const {
     return all_of(height_rects());
 }
 
+std::vector<WorldRect> Operator::index_rects() const {
+    return std::visit(IndexRects{}, shape);
+}
+
 WorldRect Operator::index_bounds() const {
-    if (const auto* crater = std::get_if<Crater>(&shape))
-        return square(crater->x_m, crater->y_m, crater->radius_m * double(kCraterMarkReach));
-    const auto* stamp = std::get_if<Stamp>(&shape);
-    return stamp && changes_index(*stamp) ? box_of(*stamp) : WorldRect{};
+    return all_of(index_rects());
 }
 
 std::vector<WorldRect> Operator::cutout_rects() const {
@@ -354,11 +521,28 @@ void apply_height(const Operator& op, const SampleGrid<double>& heights_m) {
     std::visit(ApplyHeight{heights_m}, op.shape);
 }
 
-void apply_index(const Operator& op, const ResolvedRoles& roles, const SampleGrid<IndexTexel>& texels) {
+void apply_index(const Operator& op, const ResolvedRoles& roles, const SampleGrid<IndexTexel>& texels,
+                 std::span<const double> ground_m) {
     if (const auto* crater = std::get_if<Crater>(&op.shape))
         apply_crater_index(*crater, op.index_bounds(), roles, texels);
     if (const auto* stamp = std::get_if<Stamp>(&op.shape); stamp && changes_index(*stamp))
         apply_stamp_index(*stamp, op.index_bounds(), texels);
+    if (const auto* slide = std::get_if<Slide>(&op.shape); slide && changes_anything(*slide))
+        apply_slide_index(*slide, roles, texels);
+    if (const auto* flood = std::get_if<Flood>(&op.shape)) apply_flood_index(*flood, texels, ground_m);
+}
+
+WorldRect Operator::extent() const {
+    if (std::holds_alternative<Event>(shape)) {
+        WorldRect all;
+        for (const Operator& each : parts_of(*this)) all = united(all, each.extent());
+        return all;
+    }
+    return united(united(height_bounds(), index_bounds()), united(texture_bounds(), all_of(cutout_rects())));
+}
+
+bool evaluated_before(const Operator& a, const Operator& b) {
+    return std::tie(a.order, a.id, a.part) < std::tie(b.order, b.id, b.part);
 }
 
 }  // namespace loam

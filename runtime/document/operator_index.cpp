@@ -74,9 +74,8 @@ void OperatorIndex::query(const WorldRect& rect, std::vector<const Operator*>& o
                     cell != level.cells.end())
                     visit(cell->second);
     }
-    std::sort(out.begin(), out.end(), [](const Operator* a, const Operator* b) {
-        return a->order != b->order ? a->order < b->order : a->id < b->id;
-    });
+    std::sort(out.begin(), out.end(),
+              [](const Operator* a, const Operator* b) { return evaluated_before(*a, *b); });
     out.erase(std::unique(out.begin(), out.end()), out.end());
 }
 

@@ -19,7 +19,7 @@ class OperatorIndex {
     // removed with the bounds it was added with.
     void add(const Operator* op, const WorldRect& bounds);
     void remove(const Operator* op, const WorldRect& bounds);
-    // Appends nothing twice; ascending (order, id); enabled operators only. Clears `out` first.
+    // Appends nothing twice; ascending (order, id, part); enabled operators only. Clears `out` first.
     void query(const WorldRect& rect, std::vector<const Operator*>& out) const;
 
   private:

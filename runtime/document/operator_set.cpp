@@ -1,42 +1,179 @@
 #include "runtime/document/operator_set.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "runtime/document/dirt.h"
 
 namespace loam {
 
+struct OperatorSet::Shown {
+    const Operator* source = nullptr;
+    std::unique_ptr<Operator> altered;  // where the state is not the source's own
+    bool there = false;
+    Moments::iterator since, until;
+    bool has_since = false, has_until = false;
+
+    [[nodiscard]] const Operator* op() const { return !there ? nullptr : altered ? altered.get() : source; }
+};
+
+struct OperatorSet::Held {
+    Operator op;
+    std::vector<Operator> parts;
+    std::vector<Shown> shown;  // empty: shown as it is, at any time
+};
+
+namespace {
+
+void append(std::vector<WorldRect>& to, const std::vector<WorldRect>& rects) {
+    to.insert(to.end(), rects.begin(), rects.end());
+}
+
+void add_dirt(const Operator& op, Dirt& dirt) {
+    if (!op.enabled) return;
+    append(dirt.height, op.height_rects());
+    append(dirt.index, op.index_rects());
+    append(dirt.texture, op.texture_rects());
+    append(dirt.cutout, op.cutout_rects());
+    dirt.texture_size_m = std::max(dirt.texture_size_m, op.texture_size_m());
+}
+
+// From one state to the next. A crater that only cooled has the ground it had.
+void add_change(const Operator* before, const Operator* after, Dirt& dirt) {
+    const Crater* crater = before && after ? std::get_if<Crater>(&before->shape) : nullptr;
+    if (crater) {
+        const Crater& now = std::get<Crater>(after->shape);
+        if (crater->depth_m == now.depth_m && crater->age == now.age && crater->strength == now.strength) {
+            if (!after->enabled) return;
+            append(dirt.texture, after->texture_rects());
+            dirt.texture_size_m = std::max(dirt.texture_size_m, after->texture_size_m());
+            return;
+        }
+    }
+    if (before) add_dirt(*before, dirt);
+    if (after) add_dirt(*after, dirt);
+}
+
+}  // namespace
+
+OperatorSet::OperatorSet() = default;
+OperatorSet::~OperatorSet() = default;
+
+void OperatorSet::index(const Operator& op) {
+    for (const WorldRect& rect : op.height_rects()) height_.add(&op, rect);
+    for (const WorldRect& rect : op.index_rects()) index_.add(&op, rect);
+    for (const WorldRect& rect : op.texture_rects()) texture_.add(&op, rect);
+    for (const WorldRect& rect : op.cutout_rects()) cutout_.add(&op, rect);
+}
+
+void OperatorSet::unindex(const Operator& op) {
+    for (const WorldRect& rect : op.height_rects()) height_.remove(&op, rect);
+    for (const WorldRect& rect : op.index_rects()) index_.remove(&op, rect);
+    for (const WorldRect& rect : op.texture_rects()) texture_.remove(&op, rect);
+    for (const WorldRect& rect : op.cutout_rects()) cutout_.remove(&op, rect);
+}
+
+void OperatorSet::show(Shown& shown) {
+    const LifeState state = state_at(shown.source->life, time_s_);
+    shown.there = state.there;
+    shown.altered = nullptr;
+    if (state.there && (state.strength != 1 || state.heat != 1 || state.age != 0)) {
+        shown.altered = std::make_unique<Operator>(*shown.source);
+        shown.altered->shape = shape_in(shown.source->shape, state);
+    }
+    shown.has_since = std::isfinite(state.since_s);
+    shown.has_until = std::isfinite(state.until_s);
+    if (shown.has_since) shown.since = by_since_.emplace(state.since_s, &shown);
+    if (shown.has_until) shown.until = by_until_.emplace(state.until_s, &shown);
+    if (const Operator* op = shown.op()) index(*op);
+}
+
+void OperatorSet::hide(Shown& shown) {
+    if (const Operator* op = shown.op()) unindex(*op);
+    if (shown.has_since) by_since_.erase(shown.since);
+    if (shown.has_until) by_until_.erase(shown.until);
+    shown.has_since = shown.has_until = shown.there = false;
+}
+
 void OperatorSet::set(const Operator& op) {
     remove(op.id);
-    auto owned = std::make_unique<Operator>(op);
-    for (const WorldRect& rect : op.height_rects()) height_.add(owned.get(), rect);
-    index_.add(owned.get(), op.index_bounds());
-    for (const WorldRect& rect : op.texture_rects()) texture_.add(owned.get(), rect);
-    for (const WorldRect& rect : op.cutout_rects()) cutout_.add(owned.get(), rect);
-    by_id_.emplace(op.id, std::move(owned));
+    auto held = std::make_unique<Held>();
+    held->op = op;
+    if (std::holds_alternative<Event>(op.shape)) held->parts = parts_of(op);
+    if (!held->parts.empty())
+        held->shown.resize(held->parts.size());
+    else if (!op.life.ever())
+        held->shown.resize(1);
+    for (size_t i = 0; i < held->shown.size(); ++i) {
+        held->shown[i].source = held->parts.empty() ? &held->op : &held->parts[i];
+        show(held->shown[i]);
+    }
+    if (held->shown.empty()) index(held->op);
+    if (std::holds_alternative<Footprint>(op.shape) && op.life.until_s < Life::kEver_s)
+        passing_prints_.insert(op.id);
+    by_id_.emplace(op.id, std::move(held));
 }
 
 void OperatorSet::remove(uint64_t id) {
     const auto found = by_id_.find(id);
     if (found == by_id_.end()) return;
-    const Operator* op = found->second.get();
-    for (const WorldRect& rect : op->height_rects()) height_.remove(op, rect);
-    index_.remove(op, op->index_bounds());
-    for (const WorldRect& rect : op->texture_rects()) texture_.remove(op, rect);
-    for (const WorldRect& rect : op->cutout_rects()) cutout_.remove(op, rect);
+    Held& held = *found->second;
+    for (Shown& shown : held.shown) hide(shown);
+    if (held.shown.empty()) unindex(held.op);
+    passing_prints_.erase(id);
     by_id_.erase(found);
+}
+
+void OperatorSet::set_time(double time_s, Dirt& dirt) {
+    std::vector<Shown*> changed;
+    if (time_s > time_s_)
+        for (auto it = by_until_.begin(); it != by_until_.end() && it->first <= time_s; ++it)
+            changed.push_back(it->second);
+    else
+        for (auto it = by_since_.upper_bound(time_s); it != by_since_.end(); ++it)
+            changed.push_back(it->second);
+    time_s_ = time_s;
+    // In order of evaluation, which is by place where an event has many parts.
+    std::sort(changed.begin(), changed.end(),
+              [](const Shown* a, const Shown* b) { return evaluated_before(*a->source, *b->source); });
+    for (Shown* shown : changed) {
+        std::unique_ptr<Operator> before;
+        if (const Operator* op = shown->op()) before = std::make_unique<Operator>(*op);
+        hide(*shown);
+        show(*shown);
+        add_change(before.get(), shown->op(), dirt);
+    }
+}
+
+void OperatorSet::add_shown(uint64_t id, Dirt& dirt) const {
+    const auto found = by_id_.find(id);
+    if (found == by_id_.end()) return;
+    const Held& held = *found->second;
+    for (const Shown& shown : held.shown)
+        if (const Operator* op = shown.op()) add_dirt(*op, dirt);
+    if (held.shown.empty()) add_dirt(held.op, dirt);
 }
 
 const Operator* OperatorSet::find(uint64_t id) const {
     const auto found = by_id_.find(id);
-    return found == by_id_.end() ? nullptr : found->second.get();
+    return found == by_id_.end() ? nullptr : &found->second->op;
+}
+
+OperatorSet::Cost OperatorSet::cost_of(uint64_t id) const {
+    const auto found = by_id_.find(id);
+    if (found == by_id_.end()) return {};
+    const Held& held = *found->second;
+    Cost cost{held.parts.size(), sizeof(Held)};
+    cost.bytes += held.parts.capacity() * sizeof(Operator) + held.shown.capacity() * sizeof(Shown);
+    for (const Shown& shown : held.shown) cost.bytes += shown.altered ? sizeof(Operator) : 0;
+    return cost;
 }
 
 std::vector<Operator> OperatorSet::sorted() const {
     std::vector<Operator> all;
     all.reserve(by_id_.size());
-    for (const auto& [id, op] : by_id_) all.push_back(*op);
-    std::sort(all.begin(), all.end(), [](const Operator& a, const Operator& b) {
-        return a.order != b.order ? a.order < b.order : a.id < b.id;
-    });
+    for (const auto& [id, held] : by_id_) all.push_back(held->op);
+    std::sort(all.begin(), all.end(), evaluated_before);
     return all;
 }
 

@@ -74,11 +74,16 @@ Result<size_t> remove_transition(ProjectSettings& settings, const std::string& n
     LayerEntry* entry = find_layer(settings, name);
     if (!entry || !entry->blend || entry->blend->removed) return error("there is no transition \"{}\"", name);
     entry->blend->removed = true;
-    int number = 1;
-    const auto free_name = [&] { return fmt::format("removed transition {}", number); };
-    while (find_layer(settings, free_name())) ++number;
-    entry->name = free_name();
-    return size_t(entry - settings.layers.data());
+    const size_t place = size_t(entry - settings.layers.data());
+    entry->name = name_of_removed(settings, place);
+    return place;
+}
+
+std::string name_of_removed(const ProjectSettings& settings, size_t place) {
+    std::string name = fmt::format("removed transition {}", place);
+    for (size_t i = 0; i < settings.layers.size(); ++i)
+        if (i != place && settings.layers[i].name == name) name += " ", i = size_t(-1);
+    return name;
 }
 
 std::vector<Transition> transitions_of(const ProjectSettings& settings) {

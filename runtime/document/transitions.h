@@ -31,6 +31,8 @@ struct Transition {
 [[nodiscard]] Result<size_t> put_transition(ProjectSettings& settings, const TransitionCommand& command);
 // The texels that hold it show the side it was nearer to, from now on and after more layers have been added.
 [[nodiscard]] Result<size_t> remove_transition(ProjectSettings& settings, const std::string& name);
+// Of what was removed there: no other place's, whatever is undone and done again.
+[[nodiscard]] std::string name_of_removed(const ProjectSettings& settings, size_t place);
 
 // Of two transitions between the same layers the first one is placed.
 [[nodiscard]] std::vector<Transition> transitions_of(const ProjectSettings& settings);

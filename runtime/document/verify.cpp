@@ -205,6 +205,12 @@ class Verifier {
             if (material && !material->layer.empty() && !has_layer(material->layer))
                 fail("operator {} is made of the layer \"{}\", which the project does not have", id,
                      material->layer);
+            const auto* flood = op.ok() ? std::get_if<Flood>(&op->shape) : nullptr;
+            const auto* event = op.ok() ? std::get_if<Event>(&op->shape) : nullptr;
+            for (const std::string* layer :
+                 {flood ? &flood->layer : nullptr, event ? &event->layer : nullptr})
+                if (layer && !layer->empty() && !has_layer(*layer))
+                    fail("operator {} lays the layer \"{}\", which the project does not have", id, *layer);
             if (const auto* stamp = op.ok() ? std::get_if<Stamp>(&op->shape) : nullptr) {
                 if (const auto picture = stamps_.find(stamp->image); !picture.ok())
                     fail("operator {}: {}", id, picture.message());

@@ -22,12 +22,14 @@ struct Columns {  // where the samples of a window fall on base samples, along o
     int first = 0, count = 0;  // base samples needed
 };
 
-Columns columns_of(int first, int count, int shift, int last_base) {
+// `place` of sample i in base samples, within the map.
+template <typename Place>
+Columns columns_of(int count, Place&& place) {
     Columns c;
     for (int i = 0; i < count; ++i) {
-        const int sample = std::clamp(first + i, 0, last_base << shift);
-        c.base.push_back(sample >> shift);
-        c.weights.push_back(catmull_rom(double(sample & ((1 << shift) - 1)) / double(1 << shift)));
+        const double at = place(i);
+        c.base.push_back(int(at));
+        c.weights.push_back(catmull_rom(at - int(at)));
     }
     c.first = c.base.front() - 1;
     c.count = c.base.back() + 2 - c.first + 1;
@@ -35,10 +37,8 @@ Columns columns_of(int first, int count, int shift, int last_base) {
 }
 
 // Both passes evaluate one fixed expression a sample, whose operands depend on the sample's place only.
-void interpolate_base(const Document& document, int shift, glm::ivec2 first, glm::ivec2 size, double* out_m) {
-    const ProjectSettings& settings = document.settings();
-    const Columns x = columns_of(first.x, size.x, shift, settings.height_samples_x - 1);
-    const Columns y = columns_of(first.y, size.y, shift, settings.height_samples_y - 1);
+void interpolate(const Document& document, const Columns& x, const Columns& y, double* out_m) {
+    const glm::ivec2 size(int(x.base.size()), int(y.base.size()));
     thread_local std::vector<int32_t> base;
     thread_local std::vector<double> rows;
     base.resize(size_t(x.count) * size_t(y.count));
@@ -61,6 +61,19 @@ void interpolate_base(const Document& document, int shift, glm::ivec2 first, glm
         for (int i = 0; i < size.x; ++i)
             out[i] = (w[0] * s0[i] + w[1] * s1[i] + w[2] * s2[i] + w[3] * s3[i]) * kHeightStep_m;
     }
+}
+
+glm::dvec2 last_base(const Document& document) {
+    return {document.settings().height_samples_x - 1, document.settings().height_samples_y - 1};
+}
+
+void interpolate_base(const Document& document, int shift, glm::ivec2 first, glm::ivec2 size, double* out_m) {
+    const glm::dvec2 last = last_base(document);
+    const auto axis = [&](int k) {
+        return columns_of(size[k],
+                          [&](int i) { return std::clamp(std::ldexp(first[k] + i, -shift), 0.0, last[k]); });
+    };
+    interpolate(document, axis(0), axis(1), out_m);
 }
 
 void read_base(const Document& document, int mip, glm::ivec2 first, glm::ivec2 size, double* out_m) {
@@ -144,6 +157,22 @@ void measure_range(HeightPage& page) {
     page.max_m = high;
 }
 
+// To heights at places (first + (i, j)) * step_m.
+void apply_operators(const Document& document, double step_m, glm::ivec2 first, glm::ivec2 size,
+                     double* out_m) {
+    const glm::dvec2 low(double(first.x) * step_m, double(first.y) * step_m);
+    const WorldRect rect{low.x, low.y, low.x + (size.x - 1) * step_m, low.y + (size.y - 1) * step_m};
+    thread_local std::vector<const Operator*> operators;
+    operators.clear();
+    document.operators_over_height(rect, operators);
+    if (operators.empty()) return;
+    const SampleGrid<double> grid{out_m, size.x, size.y, size.x, low.x, low.y, step_m};
+    for (const Operator* op : operators) apply_height(*op, grid);
+    const size_t count = size_t(size.x) * size_t(size.y);
+    for (size_t i = 0; i < count; ++i)
+        out_m[i] = std::isnan(out_m[i]) ? 0.0 : std::clamp(out_m[i], -kLimit_m, kLimit_m);
+}
+
 }  // namespace
 
 CubicWeights catmull_rom(double f) {
@@ -162,18 +191,28 @@ void compose_heights(const Document& document, int level, glm::ivec2 first, glm:
     else
         read_base(document, level - refine, first, size, out_m);
 
-    const double spacing = finest_height_spacing(document.settings()) * double(int64_t(1) << level);
-    const glm::dvec2 low(double(first.x) * spacing, double(first.y) * spacing);
-    const WorldRect rect{low.x, low.y, low.x + (size.x - 1) * spacing, low.y + (size.y - 1) * spacing};
-    thread_local std::vector<const Operator*> operators;
-    operators.clear();
-    document.operators_over_height(rect, operators);
-    if (operators.empty()) return;
-    const SampleGrid<double> grid{out_m, size.x, size.y, size.x, low.x, low.y, spacing};
-    for (const Operator* op : operators) apply_height(*op, grid);
-    const size_t count = size_t(size.x) * size_t(size.y);
-    for (size_t i = 0; i < count; ++i)
-        out_m[i] = std::isnan(out_m[i]) ? 0.0 : std::clamp(out_m[i], -kLimit_m, kLimit_m);
+    apply_operators(document, finest_height_spacing(document.settings()) * double(int64_t(1) << level), first,
+                    size, out_m);
+}
+
+void ground_at(const Document& document, double step_m, glm::ivec2 first, glm::ivec2 size, double* out_m) {
+    const double steps = step_m / document.settings().height_spacing_m;  // base samples a step
+    const glm::dvec2 last = last_base(document);
+    const auto axis = [&](int k, int from, int count) {
+        return columns_of(count,
+                          [&](int i) { return std::clamp((first[k] + from + i) * steps, 0.0, last[k]); });
+    };
+    int mip = 0;
+    const bool samples = std::frexp(steps, &mip) == 0.5 && --mip >= 0 && mip < document.height_mip_count();
+    if (samples)
+        read_base(document, mip, first, size, out_m);
+    else if (steps < 4)
+        interpolate(document, axis(0, 0, size.x), axis(1, 0, size.y), out_m);
+    else  // what lies between is not read
+        for (int j = 0; j < size.y; ++j)
+            for (int i = 0; i < size.x; ++i)
+                interpolate(document, axis(0, i, 1), axis(1, j, 1), out_m + j * size.x + i);
+    apply_operators(document, step_m, first, size, out_m);
 }
 
 void compose_page_heights(const Document& document, const MapPage& page, float* out_m) {

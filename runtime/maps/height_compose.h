@@ -17,6 +17,9 @@ namespace loam {
 // ReadLock.
 void compose_heights(const Document& document, int level, glm::ivec2 first, glm::ivec2 size, double* out_m);
 
+// The same at places first + (i, j) times any step, for what asks for the ground of another map's texels.
+void ground_at(const Document& document, double step_m, glm::ivec2 first, glm::ivec2 size, double* out_m);
+
 // Metres between the samples of level 0; of level L times 2^L, the places exact multiples.
 [[nodiscard]] double finest_height_spacing(const ProjectSettings& settings);
 

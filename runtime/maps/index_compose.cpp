@@ -1,6 +1,9 @@
+#include <algorithm>
+
 #include "runtime/base/check.h"
 #include "runtime/document/document.h"
 #include "runtime/maps/base_window.h"
+#include "runtime/maps/height_compose.h"
 #include "runtime/maps/index_map.h"
 
 namespace loam {
@@ -27,7 +30,13 @@ void IndexMap::compose(const Document& document, const VirtualMap& map, const Ma
         {low.x, low.y, low.x + (size.x - 1) * spacing, low.y + (size.y - 1) * spacing}, operators);
     const ResolvedRoles roles = document.roles();
     const SampleGrid<IndexTexel> grid{texels.data(), size.x, size.y, size.x, low.x, low.y, spacing};
-    for (const Operator* op : operators) apply_index(*op, roles, grid);
+    const bool floods = std::any_of(operators.begin(), operators.end(), [](const Operator* op) {
+        return std::holds_alternative<Flood>(op->shape);
+    });
+    thread_local std::vector<double> ground_m;
+    ground_m.resize(floods ? texels.size() : 0);
+    if (floods) ground_at(document, spacing, first, size, ground_m.data());
+    for (const Operator* op : operators) apply_index(*op, roles, grid, ground_m);
 
     for (int j = 0; j < size.y; ++j)
         std::copy_n(texels.begin() + ptrdiff_t(j) * size.x, size.x,

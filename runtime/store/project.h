@@ -38,6 +38,7 @@ struct LayerEntry {
     std::optional<Blend> blend{};
     bool operator==(const LayerEntry&) const = default;
     std::array<double, kChannelNames.size()> channels{};  // amounts 0 … 1, by Channel
+    double softness = 0.2;  // how far it gives underfoot: 0 rock … 1 deep snow
 };
 
 // Which layers events use, by name; an empty or unknown name falls back to layer 0.

@@ -107,6 +107,7 @@ LayerEntry layer_of(const toml::node& node) {
         {"name", [&](const toml::node& n) { layer.name = string_of(n, "name"); }},
         {"file", [&](const toml::node& n) { layer.file = string_of(n, "file"); }},
         {"tile_m", [&](const toml::node& n) { layer.tile_m = number_of(n, "tile_m", 0.01, 10000); }},
+        {"softness", [&](const toml::node& n) { layer.softness = number_of(n, "softness", 0, 1); }},
         {"blend", read_blend},
         {"threshold",
          [&](const toml::node& n) {
@@ -325,6 +326,8 @@ std::string text_of(const ProjectSettings& s) {
             continue;
         }
         out += fmt::format("file = {}\ntile_m = {}\n", toml_text(layer.file), toml_real(layer.tile_m));
+        if (layer.softness != LayerEntry{}.softness)
+            out += fmt::format("softness = {}\n", toml_real(layer.softness));
         for (size_t c = 0; c < kChannelNames.size(); ++c)
             if (layer.channels[c] != 0)
                 out += fmt::format("{} = {}\n", kChannelNames[c], toml_real(layer.channels[c]));

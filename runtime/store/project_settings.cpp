@@ -42,6 +42,7 @@ Status check_layer(const LayerEntry& layer, std::set<std::string>& names) {
         return status.ok() ? status : error("layer \"{}\": {}", layer.name, status.message());
     };
     LOAM_TRY(check("tile_m", layer.tile_m, 0.01, 10000));
+    LOAM_TRY(check("softness", layer.softness, 0, 1));
     for (size_t c = 0; c < kChannelNames.size(); ++c)
         LOAM_TRY(check(kChannelNames[c], layer.channels[c], 0, 1));
     return {};

@@ -87,11 +87,12 @@ Status DecalPasses::warm_up(const Document& document, const LayerSet& layers) {
     document.operators_over_texture({-kEverywhere_m, -kEverywhere_m, kEverywhere_m, kEverywhere_m},
                                     operators);
     for (const Operator* op : operators) {
-        // As the variant has them; stamps and cutouts draw nothing.
-        constexpr DecalKind kKindOf[] = {DecalKind::crater, DecalKind::footprint, DecalKind::terrain,
-                                         DecalKind::spline, DecalKind::volume};
-        static_assert(std::size(kKindOf) + 2 == std::variant_size_v<OperatorShape>);
-        if (auto made = pipeline(kKindOf[op->shape.index()], 0, layers); !made.ok()) return made.error();
+        const DecalKind kind = std::holds_alternative<Crater>(op->shape)         ? DecalKind::crater
+                               : std::holds_alternative<Footprint>(op->shape)    ? DecalKind::footprint
+                               : std::holds_alternative<TerrainDecal>(op->shape) ? DecalKind::terrain
+                               : std::holds_alternative<SplineDecal>(op->shape)  ? DecalKind::spline
+                                                                                 : DecalKind::volume;
+        if (auto made = pipeline(kind, 0, layers); !made.ok()) return made.error();
     }
     return {};
 }

@@ -43,19 +43,21 @@ struct MarkSource {
     double x_m = 0, y_m = 0;
     double size_m = 0;   // see decal_fade
     double reach_m = 0;  // from the centre
+    float strength = 1;
     glm::vec4 shape{0};
     uint32_t seed = 0, foot = 0;
 };
 
 MarkSource source_of(const Crater& c) {
-    return {
-        .kind = DecalKind::crater,
-        .x_m = c.x_m,
-        .y_m = c.y_m,
-        .size_m = size_m(c),
-        .reach_m = c.radius_m * double(kCraterMarkReach),
-        .shape = {float(c.radius_m), float(c.depth_m > 0 ? c.depth_m : c.radius_m * 0.4), float(c.heat), 0},
-        .seed = c.seed};
+    return {.kind = DecalKind::crater,
+            .x_m = c.x_m,
+            .y_m = c.y_m,
+            .size_m = size_m(c),
+            .reach_m = c.radius_m * double(kCraterMarkReach),
+            .strength = float(c.strength),
+            .shape = {float(c.radius_m), float(c.depth_m > 0 ? c.depth_m : c.radius_m * 0.4), float(c.heat),
+                      float(c.age)},
+            .seed = c.seed};
 }
 
 MarkSource source_of(const Footprint& f) {
@@ -64,6 +66,7 @@ MarkSource source_of(const Footprint& f) {
             .y_m = f.y_m,
             .size_m = size_m(f),
             .reach_m = f.length_m * double(kFootprintReach),
+            .strength = float(f.strength),
             .shape = {float(f.length_m), float(f.depth_m), float(std::sin(f.heading_rad)),
                       float(std::cos(f.heading_rad))},
             .seed = f.seed,
@@ -71,9 +74,10 @@ MarkSource source_of(const Footprint& f) {
 }
 
 DecalPass pass_of(const Operator& op) {
-    return std::holds_alternative<SplineDecal>(op.shape)   ? DecalPass::splines
-           : std::holds_alternative<VolumeDecal>(op.shape) ? DecalPass::volumes
-                                                           : DecalPass::terrain;
+    return std::holds_alternative<SplineDecal>(op.shape) ? DecalPass::splines
+           : std::holds_alternative<VolumeDecal>(op.shape) || std::holds_alternative<Flood>(op.shape)
+               ? DecalPass::volumes
+               : DecalPass::terrain;
 }
 
 // One rectangle of a page; a call a kind of operator.
@@ -120,7 +124,7 @@ struct PageDecals {
     // The caller adds quads.
     [[nodiscard]] shared::DecalInstance mark(const MarkSource& source) const {
         shared::DecalInstance instance{};
-        instance.fade = shared::decal_fade(float(source.size_m), float(texel_m));
+        instance.fade = shared::decal_fade(float(source.size_m), float(texel_m)) * source.strength;
         instance.page_shift = shift;
         instance.center_texel = {float((source.x_m - square.min_x) / texel_m + kPageBorder),
                                  float((source.y_m - square.min_y) / texel_m + kPageBorder)};
@@ -182,6 +186,9 @@ struct PageDecals {
     }
     void operator()(const Stamp&) const {}
     void operator()(const Cutout&) const {}
+    void operator()(const Slide&) const {}
+    void operator()(const Flood& flood, const WorldRect& bounds) const { (*this)(surface_of(flood), bounds); }
+    void operator()(const Event&) const {}
     void operator()(const SplineDecal& spline) const {
         if (!shown(size_m(spline))) return;
         for (const SplinePiece& piece : spline.path->pieces()) {
@@ -221,6 +228,7 @@ struct PictureDecals {
         out.decals.push_back({.center_rel_m = relative({source.x_m, source.y_m}),
                               .reach_m = float(source.reach_m),
                               .size_m = float(source.size_m),
+                              .strength = source.strength,
                               .shape = source.shape,
                               .seed = source.seed,
                               .foot = source.foot,
@@ -231,6 +239,7 @@ struct PictureDecals {
         out.decals.push_back({.center_rel_m = relative(bounds.center()),
                               .reach_m = float(std::hypot(bounds.width(), bounds.height()) * 0.5),
                               .size_m = 0,
+                              .strength = 1,
                               .shape = {},
                               .seed = 0,
                               .foot = 0,
@@ -253,6 +262,9 @@ struct PictureDecals {
     }
     void operator()(const Stamp&) const {}
     void operator()(const Cutout&) const {}
+    void operator()(const Slide&) const {}
+    void operator()(const Flood& flood, const WorldRect& bounds) const { (*this)(surface_of(flood), bounds); }
+    void operator()(const Event&) const {}
     void operator()(const SplineDecal& spline) const {
         for (const SplinePiece& piece : spline.path->pieces()) {
             const WorldRect bounds = piece.line.grown(spline.path->half_width_m());
@@ -341,7 +353,8 @@ DirectDecals direct_decals(const Document& document, const LayerSet& layers, con
         found.insert(found.end(), here.begin(), here.end());
     }
     std::sort(found.begin(), found.end(), [](const Operator* a, const Operator* b) {
-        return std::tuple(pass_of(*a), a->order, a->id) < std::tuple(pass_of(*b), b->order, b->id);
+        const DecalPass pass_a = pass_of(*a), pass_b = pass_of(*b);
+        return pass_a != pass_b ? pass_a < pass_b : evaluated_before(*a, *b);
     });
     found.erase(std::unique(found.begin(), found.end()), found.end());
     DirectDecals out;

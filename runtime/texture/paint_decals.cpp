@@ -90,6 +90,7 @@ shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, La
     const double tile_m = set_material(document, layers, tier, volume.material, out);
     set_box(axes_of(volume), volume.half_m, volume.center_m - origin_m, tile_m, out);
     out.ellipse = volume.outline == DecalOutline::ellipse;
+    out.deep_edge = float(volume.deep_edge);
     return out;
 }
 

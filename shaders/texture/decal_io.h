@@ -11,10 +11,10 @@ struct DecalInstance {
     ivec2 page_shift;   // page texel = scratch pixel - page_shift
     vec2 center_texel;  // of the decal, in page texels (border included, texel i's centre is at i + 0.5)
     float texel_m;      // of the page
-    float fade;         // 1, less where the decal is smaller than a texel of this level
-    vec4 shape;         // crater: radius m, depth m, heat, 0; footprint: length m, depth m, sin heading, cos heading
+    float fade;         // its strength, less where the decal is smaller than a texel of this level
+    vec4 shape;         // crater: radius m, depth m, heat, age; footprint: length m, depth m, sin heading, cos heading
     uint seed;
-    uint foot;          // footprint: 0 left, 1 right
+    uint foot;          // footprint: 0 left, 1 right, 2 tyre, 3 furrow
 };
 
 // One decal in view, for shading without the cache (direct_decals.glsl).
@@ -22,6 +22,7 @@ struct DirectDecal {
     vec2 center_rel_m;  // camera-relative
     float reach_m;      // nothing farther than this from the centre changes
     float size_m;       // what fades when smaller than a texel: see decal_fade
+    float strength;     // of the whole mark
     vec4 shape;         // as DecalInstance's
     uint seed;
     uint foot;

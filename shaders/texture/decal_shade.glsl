@@ -37,8 +37,8 @@ vec4 crater_channels(DecalInstance decal, vec2 offset_m, float scorch) {
 // offset_m: from the crater's centre.
 DecalShade crater_shade(DecalInstance decal, vec2 offset_m) {
     precise vec2 local = offset_m / decal.shape.x;
-    precise float scorch = crater_scorch(local, decal.seed);
-    precise float rays = crater_rays(local, decal.seed);
+    precise float scorch = crater_scorch(local, decal.seed, decal.shape.w);
+    precise float rays = crater_rays(local, decal.seed, decal.shape.w);
     float cover = max(0.85 * scorch, 0.6 * rays) * decal.fade;
     // Rubble: bumps of a fortieth of the radius, gone where they are smaller than two texels.
     float bump_m = max(decal.shape.x * (1.0 / 40.0), 0.02);

@@ -63,7 +63,7 @@ MaterialSample with_decals(MaterialSample m, vec3 at_rel_m, vec3 ground, float l
         }
         DecalInstance instance;
         instance.texel_m = texel_m;
-        instance.fade = decal_fade(decal.size_m, texel_m);
+        instance.fade = decal_fade(decal.size_m, texel_m) * decal.strength;
         instance.shape = decal.shape;
         instance.seed = decal.seed;
         instance.foot = decal.foot;

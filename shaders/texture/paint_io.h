@@ -25,6 +25,7 @@ struct PaintDecal {
     float gloss, metalness;  // of a flat colour
     float opacity;
     float edge;           // share of the smaller half size over which it fades
+    float deep_edge;      // volumes: share of z's half size over which it fades
     float rough;          // how far noise eats into the edge
     uint seed;
     uint ellipse;         // 1: of an ellipse's outline

@@ -112,7 +112,7 @@ PaintPlace paint_volume(PaintDecal decal, vec3 at_m, vec3 ground, float texel_m)
     vec3 ground_east = normalize(vec3(ground.z, 0.0, -ground.x)), ground_north = cross(ground, ground_east);
     place.right = vec2(dot(decal.axis_x, ground_east), dot(decal.axis_x, ground_north));
     place.up = vec2(dot(decal.axis_y, ground_east), dot(decal.axis_y, ground_north));
-    float deep = 1.0 - noise_ramp(0.8, 1.0, abs(local_m.z) / decal.half_m.z);
+    float deep = 1.0 - noise_ramp(1.0 - decal.deep_edge, 1.0, abs(local_m.z) / decal.half_m.z);
     float facing = noise_ramp(0.05, 0.35, dot(ground, decal.axis_z));
     place.cover = paint_outline(decal, local_m.xy, place.texel_m) * deep * facing;
     return place;

@@ -21,13 +21,54 @@ def random_place(rng, side):
     return max(0.0, one()), max(0.0, one())
 
 
+def random_operator(rng, x, y, layers):
+    """Of any kind that is not made below, often with a life."""
+    size = rng.uniform(0.5, 15)
+    near = [x + rng.uniform(-3, 3) * size, y + rng.uniform(-3, 3) * size]
+    half = [size * rng.uniform(0.3, 1), size * rng.uniform(0.3, 1)]
+    event = {"cmd": "event", "x": x, "y": y, "start_s": rng.uniform(0, 50), "duration_s": rng.uniform(0, 20),
+             "seed": rng.randrange(1000)}
+    energy = {"energy_j": 4.184e6 * (rng.uniform(0.5, 8) / 0.4) ** 3, "cool_s": rng.choice((0, 9)), "weather_s": rng.choice((0, 30))}
+    events = [dict(event, event="crater", **energy),
+              dict(event, event="crater_line", to=near, count=rng.randint(1, 6), **energy),
+              dict(event, event="barrage", radius_m=2 * size + 1, count=rng.randint(1, 30), **energy),
+              dict(event, event="crash", to=[x + 4 * size, y + size], width_m=max(0.3 * size, 0.5), count=rng.randint(0, 12)),
+              dict(event, event="landslide", radius_m=size + 1, volume_m3=0.2 * size ** 3),
+              dict(event, event="flood", radius_m=3 * size + 1, level_m=rng.uniform(-5, 20))]
+    if rng.random() < 0.4:
+        return rng.choice(events)
+    points = [[x + rng.uniform(-2, 2) * size, y + rng.uniform(-2, 2) * size, rng.uniform(-5, 20)] for _ in range(7)]
+    operator = rng.choice((
+        {"cmd": "decal", "x": x, "y": y, "half_m": half, "heading_rad": rng.uniform(0, 6), "layer": rng.choice(layers)},
+        {"cmd": "spline", "points": points, "width_m": max(0.3 * size, 0.1), "carve": rng.random(), "layer": rng.choice(layers)},
+        {"cmd": "volume", "at": [x, y, rng.uniform(-5, 20)], "half_m": half + [size], "direction": [0.3, 0.2, -1]},
+        {"cmd": "cutout", "form": "brush", "dabs": [[x, y], near], "radius_m": size, "fill": rng.random() < 0.3},
+        {"cmd": "cutout", "form": "box", "at": [x, y, rng.uniform(-5, 20)], "half_m": half + [4 * size]},
+        {"cmd": "slide", "x": x, "y": y, "radius_m": size, "to": near, "to_radius_m": 1.5 * size, "volume_m3": 0.2 * size ** 3},
+        {"cmd": "flood", "x": x, "y": y, "radius_m": 3 * size + 1, "level_m": rng.uniform(-5, 20), "layer": rng.choice(layers)}))
+    if rng.random() < 0.6:
+        begins = rng.uniform(0, 50)
+        operator["life"] = {"from_s": begins, "until_s": begins + rng.uniform(5, 40), "rise_s": rng.uniform(0, 5),
+                            "fade_s": rng.uniform(0, 10)}
+    return operator
+
+
 def random_command(rng, side, layers, open_undo, open_redo):
     kind = rng.random()
-    if kind < 0.12 and open_undo:
+    if kind < 0.1 and open_undo:
         return {"cmd": "undo"}
-    if kind < 0.18 and open_redo:
+    if kind < 0.15 and open_redo:
         return {"cmd": "redo"}
     x, y = random_place(rng, side)
+    if kind < 0.25:
+        return {"cmd": "time", "time_s": rng.uniform(-5, 80)}
+    if kind < 0.5:
+        return random_operator(rng, x, y, layers)
+    if kind < 0.6:
+        id = rng.randrange(1, 120)
+        return rng.choice(({"cmd": "remove", "id": id}, {"cmd": "operator", "id": id, "enabled": rng.random() < 0.5},
+                           {"cmd": "reorder", "id": id, "order": rng.randrange(120)}))
+    kind = rng.uniform(0.18, 1)
     dabs = [[x + i * rng.uniform(-3, 3), y + i * rng.uniform(-3, 3)] for i in range(rng.randint(1, 5))]
     if kind < 0.45:
         mode = rng.choice(("raise", "lower", "smooth", "flatten"))
@@ -58,7 +99,10 @@ def test_random_edits_leave_no_stale_page_and_undo_to_the_start(plain, seed):
         original = p.digest()
         p.step(cameras[0], 6, size=size)
         for i in range(COUNT):
-            p.apply(random_command(rng, side, p.layers, p.can_undo, p.can_redo))
+            try:
+                p.apply(random_command(rng, side, p.layers, p.can_undo, p.can_redo))
+            except loam.Error as refused:
+                assert "there is no operator" in str(refused)
             if i % 3 == 0:
                 p.step(cameras[(i // 60) % len(cameras)], 1, size=size)
             if i % 100 == 99:

@@ -67,7 +67,8 @@ TEST(command, errors_are_one_sentence) {
         {R"({"cmd":5})", "a command: \"cmd\" must be a text, found number"},
         {R"({"cmd":"foo"})",
          "unknown command \"foo\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-         "stamp, cutout, edit, reorder, operator, remove, transition, undo, redo)"},
+         "stamp, cutout, slide, flood, event, edit, reorder, operator, remove, transition, time, undo, "
+         "redo)"},
         {R"({"cmd":"transition"})", "transition: \"name\" is missing"},
         {R"({"cmd":"transition","name":""})", "a transition needs a name"},
         {R"({"cmd":"transition","name":"a","threshold":-1})", "threshold is -1, must be 0 … 1"},
@@ -112,8 +113,8 @@ TEST(command, errors_are_one_sentence) {
         {R"({"cmd":"crater","x":1,"y":1,"heat":"hot"})", "crater: \"heat\" must be a number, found string"},
         {R"({"cmd":"footprints","prints":[{"x":1,"y":1,"toes":5}]})",
          "footprints: print 0: unknown key \"toes\""},
-        {R"({"cmd":"footprints","prints":[{"x":1,"y":1,"foot":2}]})",
-         "footprints: print 0: \"foot\" is 2, must be 0 … 1"},
+        {R"({"cmd":"footprints","prints":[{"x":1,"y":1,"foot":4}]})",
+         "footprints: print 0: \"foot\" is 4, must be 0 … 3"},
         {R"({"cmd":"footprints","prints":[3]})", "footprints: print 0 must be an object, found number"},
         {R"({"cmd":"operator","id":1})", "operator: \"enabled\" is missing"},
         {R"({"cmd":"operator","id":1,"enabled":1})",

@@ -135,7 +135,7 @@ TEST(Cutout, CommandsReadAndAreRefused) {
         {R"({"cmd":"cutout","form":"brush","dabs":[[0,0]],"radius_m":-1})",
          "radius_m is -1, must be 0.01 … 5000"},
         {R"({"cmd":"cutout","form":"brush","dabs":[[0,0]],"at":[0,0,0]})",
-         "cutout: unknown key \"at\" (known: cmd, dabs, fill, form, group, radius_m)"},
+         "cutout: unknown key \"at\" (known: cmd, dabs, fill, form, group, life, radius_m)"},
         {R"({"cmd":"cutout","form":"convex","corners":[[0,0,0]]})",
          "a convex cutout has 1 corners, must be 4 … 32"},
         {R"({"cmd":"cutout","form":"convex","corners":[[0,0,0],[1,0,0],[0,1,0],[1,1,0]]})",

@@ -1,6 +1,8 @@
-// Random decals, splines and volumes, and cutouts.
+// Random operators: decals, splines and volumes, cutouts, earth, events, and lives for them.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <random>
 
 #include "runtime/document/operator.h"
@@ -83,6 +85,79 @@ inline Cutout random_cutout(std::mt19937& random, glm::dvec2 at, double ground_m
         c.roll_rad = none.roll_rad;
     }
     return c;
+}
+
+// A lump of soil on its way, or a flood around a level.
+inline OperatorShape random_earth(std::mt19937& random, glm::dvec2 at, double ground_m, double size_m) {
+    const auto real = [&](double low, double high) {
+        return std::uniform_real_distribution(low, high)(random);
+    };
+    if (random() % 2)
+        return Slide{.x_m = at.x,
+                     .y_m = at.y,
+                     .radius_m = real(0.3, 1) * size_m,
+                     .to_m = at + glm::dvec2(real(-4, 4), real(-4, 4)) * size_m,
+                     .to_radius_m = real(0.3, 2) * size_m,
+                     .volume_m3 = real(0, 0.3) * size_m * size_m * size_m,
+                     .way = real(0, 1)};
+    return Flood{.x_m = at.x,
+                 .y_m = at.y,
+                 .radius_m = std::max(real(1, 5) * size_m, 1.0),
+                 .level_m = ground_m + real(-1, 1) * size_m,
+                 .from_m = ground_m - size_m,
+                 .layer = random() % 2 ? "dirt" : "",
+                 .way = real(0, 1)};
+}
+
+inline constexpr double kRandomTimes_s = 100;  // lives and events begin in this time
+
+inline Life random_life(std::mt19937& random) {
+    const auto real = [&](double low, double high) {
+        return std::uniform_real_distribution(low, high)(random);
+    };
+    Life life;
+    if (random() % 3 == 0) return life;
+    life.from_s = real(0, kRandomTimes_s);
+    if (random() % 2) life.rise_s = real(0, 20);
+    if (random() % 2) life.cool_s = real(0, 50);
+    if (random() % 2) life.weather_s = real(0, 50);
+    if (random() % 2) life.until_s = life.from_s + real(1, 60);
+    if (random() % 2 && life.until_s < Life::kEver_s) life.fade_s = real(0, 30);
+    return life;
+}
+
+inline Event random_event(std::mt19937& random, glm::dvec2 at, double ground_m, double size_m) {
+    const auto real = [&](double low, double high) {
+        return std::uniform_real_distribution(low, high)(random);
+    };
+    Event e = default_event(EventKind(random() % kEventKinds));
+    e.x_m = at.x;
+    e.y_m = at.y;
+    const double turn = real(0, 6.3);
+    if (e.kind == EventKind::crater_line || e.kind == EventKind::crash || e.kind == EventKind::landslide)
+        e.to_m = at + glm::dvec2(std::cos(turn), std::sin(turn)) * (real(2, 5) * size_m);
+    const double energy_j = 4.184e6 * std::pow(size_m * 0.6 / 0.4, 3);
+    if (e.kind == EventKind::crater || e.kind == EventKind::crater_line || e.kind == EventKind::barrage) {
+        e.energy_j = std::max(energy_j * real(0.1, 1), 1e5);
+        e.weather_s = random() % 2 ? real(1, 60) : 0;
+        e.cool_s = random() % 2 ? real(1, 60) : 0;
+    }
+    if (e.count > 0) e.count = int(random() % 12) + 1;
+    if (e.kind == EventKind::barrage || e.kind == EventKind::flood) e.radius_m = std::max(2 * size_m, 1.0);
+    if (e.kind == EventKind::crash) e.width_m = std::max(0.4 * size_m, 0.5);
+    if (e.kind == EventKind::landslide) {
+        e.radius_m = std::max(size_m, 1.0);
+        e.volume_m3 = real(0, 1) * size_m * size_m * size_m;
+        if (random() % 3 == 0) e.to_m.reset();
+    }
+    if (e.kind == EventKind::flood) {
+        e.level_m = ground_m + real(-1, 1) * size_m;
+        e.from_m = ground_m - size_m;
+    }
+    e.start_s = real(0, kRandomTimes_s);
+    e.duration_s = real(0, 20);
+    e.seed = uint32_t(random());
+    return e;
 }
 
 }  // namespace loam::test

@@ -288,7 +288,8 @@ TEST(decals, bad_ones_are_refused_with_one_sentence) {
         {R"({"cmd":"volume","at":[0,0]})", "volume: \"at\" must be 3 numbers"},
         {R"({"cmd":"volume","at":[0,0,0],"half_m":[1,1,-1]})", "half_m is -1, must be 0.01 … 5000 m"},
         {R"({"cmd":"edit","id":1,"kind":"tree"})",
-         "edit: unknown kind \"tree\" (known: crater, footprint, decal, spline, volume, stamp, cutout)"},
+         "edit: unknown kind \"tree\" (known: crater, footprint, decal, spline, volume, stamp, cutout, "
+         "slide, flood, event)"},
         {R"({"cmd":"reorder","id":1})", "reorder: \"order\" is missing"},
     };
     for (const auto& [json, expected] : cases) {

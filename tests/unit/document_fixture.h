@@ -76,7 +76,7 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
         return list;
     };
     Command command;
-    switch (whole(0, 13)) {
+    switch (whole(0, 16)) {
         case 0:
         case 1:
         case 2: {
@@ -140,7 +140,8 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
             command.body = SetOperatorCommand{random() % (most_id + 1), whole(0, 1) == 1};
             break;
         case 9:
-            command.body = AddOperatorCommand{random_decal(random, place(), uniform(0.5, 20))};
+            command.body =
+                AddOperatorCommand{random_decal(random, place(), uniform(0.5, 20)), random_life(random)};
             break;
         case 10:
             command.body = EditOperatorCommand{random() % (most_id + 1),
@@ -162,6 +163,16 @@ inline Command random_command(std::mt19937& random, uint64_t most_id) {
             command.body = transition;
             break;
         }
+        case 13:
+            command.body =
+                AddOperatorCommand{random_earth(random, place(), 5, uniform(1, 20)), random_life(random)};
+            break;
+        case 14:
+            command.body = AddOperatorCommand{random_event(random, place(), 5, uniform(1, 20))};
+            break;
+        case 15:
+            command.body = TimeCommand{uniform(-10, 1.5 * kRandomTimes_s)};
+            break;
         default:
             command.body = RemoveOperatorCommand{random() % (most_id + 1)};
             break;

@@ -107,9 +107,10 @@ class MapFixture {
     Dirt cutout() {
         return apply(AddOperatorCommand{random_cutout(random_, place(), real(-20, 20), real(2, 30))});
     }
+    Dirt time(double time_s) { return apply(TimeCommand{time_s}); }
     Dirt random_command() {
         const glm::dvec2 at = place();
-        switch (uniform(0, 9)) {
+        switch (uniform(0, 14)) {
             case 0:
                 return crater(at.x, at.y, real(0.5, 25));
             case 1: {
@@ -120,6 +121,7 @@ class MapFixture {
                     print.y_m = at.y;
                     print.heading_rad = real(0, 6);
                     print.length_m = real(0.3, 3);
+                    print.foot = uniform(0, kFurrow);
                     prints.prints.push_back(print);
                 }
                 return apply(prints);
@@ -148,7 +150,8 @@ class MapFixture {
                 return apply(paint);
             }
             case 6:
-                return apply(AddOperatorCommand{random_decal(random_, at, real(0.5, 20))});
+                return apply(
+                    AddOperatorCommand{random_decal(random_, at, real(0.5, 20)), random_life(random_)});
             case 7: {
                 const auto operators = document_->operators();
                 if (operators.empty()) break;
@@ -158,6 +161,18 @@ class MapFixture {
             }
             case 8:
                 return cutout();
+            case 9:
+                return apply(AddOperatorCommand{random_earth(random_, at, real(-20, 20), real(2, 20)),
+                                                random_life(random_)});
+            case 10:
+                return apply(AddOperatorCommand{random_event(random_, at, real(-20, 20), real(1, 12))});
+            case 11: {
+                Crater crater{.x_m = at.x, .y_m = at.y, .radius_m = real(0.5, 25), .heat = real(0, 1)};
+                return apply(CraterCommand{crater, random_life(random_)});
+            }
+            case 12:
+            case 13:
+                return time(real(-5, 1.5 * kRandomTimes_s));
             default:
                 break;
         }

@@ -21,12 +21,12 @@ vec2 on_ray(float r, float angle) {
 
 TEST(crater, has_a_bowl_a_rim_and_ends_in_nothing) {
     for (uint32_t seed = 0; seed < 20; ++seed) {
-        EXPECT_NEAR(shared::crater_height(vec2(0, 0), 0.4f, seed), -0.4f, 0.05f);
+        EXPECT_NEAR(shared::crater_height(vec2(0, 0), 0.4f, seed, 0), -0.4f, 0.05f);
         float rim = 0;
         for (float angle = 0; angle < 2 * kPi; angle += 0.1f) {
             float highest = -1, at = 0;
             for (float r = 0; r < 3; r += 0.01f) {
-                const float h = shared::crater_height(on_ray(r, angle), 0.4f, seed);
+                const float h = shared::crater_height(on_ray(r, angle), 0.4f, seed, 0);
                 ASSERT_TRUE(std::isfinite(h));
                 if (h > highest) highest = h, at = r;
                 if (r >= kCraterHeightReach) {
@@ -48,7 +48,7 @@ TEST(crater, height_has_no_steps_and_no_kinks) {
         for (float angle = 0.05f; angle < 6; angle += 0.37f) {
             double before = 0, slope_before = 0;
             for (int i = 0; float(i) * step < 2.8f; ++i) {
-                const double h = double(shared::crater_height(on_ray(float(i) * step, angle), 0.4f, seed));
+                const double h = double(shared::crater_height(on_ray(float(i) * step, angle), 0.4f, seed, 0));
                 const double slope = (h - before) / step;
                 if (i > 0) {
                     ASSERT_LT(std::abs(slope), 2.0) << "at " << float(i) * step;
@@ -69,8 +69,8 @@ TEST(crater, marks_lie_in_range_and_end) {
     float most_rays = 0;
     for (int i = 0; i < 100000; ++i) {
         const vec2 p(place(random), place(random));
-        const float rays = shared::crater_rays(p, 5), scorch = shared::crater_scorch(p, 5);
-        const int zone = shared::crater_zone(p, 5);
+        const float rays = shared::crater_rays(p, 5, 0), scorch = shared::crater_scorch(p, 5, 0);
+        const int zone = shared::crater_zone(p, 5, 0);
         ASSERT_TRUE(rays >= 0 && rays <= 1 && scorch >= 0 && scorch <= 1 && zone >= 0 && zone <= 2);
         if (std::hypot(p.x, p.y) >= kCraterMarkReach) {
             ASSERT_TRUE(rays == 0 && scorch == 0 && zone == 0);
@@ -81,8 +81,8 @@ TEST(crater, marks_lie_in_range_and_end) {
     EXPECT_GT(zones[1], 1000);
     EXPECT_GT(zones[2], 4000);
     EXPECT_GT(most_rays, 0.5f);
-    EXPECT_EQ(shared::crater_scorch(vec2(0, 0), 5), 1.0f);
-    EXPECT_EQ(shared::crater_zone(vec2(0, 0), 5), 1);
+    EXPECT_EQ(shared::crater_scorch(vec2(0, 0), 5, 0), 1.0f);
+    EXPECT_EQ(shared::crater_zone(vec2(0, 0), 5, 0), 1);
 }
 
 TEST(noise, slope_is_the_derivative) {
@@ -183,7 +183,8 @@ TEST(operators, change_samples_by_position_only_and_within_bounds) {
         };
         const auto texels_of = [&](int i0, int j0, int size) {
             std::vector<IndexTexel> texels(size_t(size * size));
-            apply_index(op, roles, {texels.data(), size, size, size, i0 * spacing, j0 * spacing, spacing});
+            apply_index(op, roles, {texels.data(), size, size, size, i0 * spacing, j0 * spacing, spacing},
+                        {});
             return texels;
         };
         const auto whole = compose(150, 150, 400);

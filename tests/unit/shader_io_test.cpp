@@ -134,14 +134,35 @@ TEST(ShaderIo, DebugFacts) {
 
 TEST(ShaderIo, PaintDecal) {
     expect_layout("PaintDecal", sizeof(shared::PaintDecal),
-                  {AT(PaintDecal, center_m), AT(PaintDecal, axis_x), AT(PaintDecal, axis_y), AT(PaintDecal, axis_z),
-                   AT(PaintDecal, half_m), AT(PaintDecal, phase), AT(PaintDecal, tiles_per_m), AT(PaintDecal, lod_bias),
-                   AT(PaintDecal, layer), AT(PaintDecal, colour), AT(PaintDecal, gloss), AT(PaintDecal, metalness),
-                   AT(PaintDecal, opacity), AT(PaintDecal, edge), AT(PaintDecal, rough), AT(PaintDecal, seed),
-                   AT(PaintDecal, ellipse), AT(PaintDecal, albedo_share), AT(PaintDecal, normal_share),
-                   AT(PaintDecal, gloss_share), AT(PaintDecal, metal_share), AT(PaintDecal, occlusion_share),
-                   AT(PaintDecal, first_segment), AT(PaintDecal, segment_count), AT(PaintDecal, own_first),
-                   AT(PaintDecal, own_count), AT(PaintDecal, length_m), AT(PaintDecal, fade_m)});
+                  {AT(PaintDecal, center_m),
+                   AT(PaintDecal, axis_x),
+                   AT(PaintDecal, axis_y),
+                   AT(PaintDecal, axis_z),
+                   AT(PaintDecal, half_m),
+                   AT(PaintDecal, phase),
+                   AT(PaintDecal, tiles_per_m),
+                   AT(PaintDecal, lod_bias),
+                   AT(PaintDecal, layer),
+                   AT(PaintDecal, colour),
+                   AT(PaintDecal, gloss),
+                   AT(PaintDecal, metalness),
+                   AT(PaintDecal, opacity),
+                   AT(PaintDecal, edge),
+                   AT(PaintDecal, deep_edge),
+                   AT(PaintDecal, rough),
+                   AT(PaintDecal, seed),
+                   AT(PaintDecal, ellipse),
+                   AT(PaintDecal, albedo_share),
+                   AT(PaintDecal, normal_share),
+                   AT(PaintDecal, gloss_share),
+                   AT(PaintDecal, metal_share),
+                   AT(PaintDecal, occlusion_share),
+                   AT(PaintDecal, first_segment),
+                   AT(PaintDecal, segment_count),
+                   AT(PaintDecal, own_first),
+                   AT(PaintDecal, own_count),
+                   AT(PaintDecal, length_m),
+                   AT(PaintDecal, fade_m)});
 }
 
 TEST(ShaderIo, PaintSegment) {
