@@ -226,6 +226,7 @@ void App::set_tool(Tool tool) {
     if (tools.stroking()) return;
     tools.tool = tool;
     cursor_revision_ = ~uint64_t{0};  // not every tool sees holes
+    if (tool == Tool::event) show_timeline = true;
     // Others may have added some since.
     if (tool == Tool::stamp) stamp_names = session.document().stamps();
     say(tool == Tool::stamp && stamp_names.empty()

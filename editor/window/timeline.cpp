@@ -13,12 +13,11 @@ constexpr size_t kMostLanes = 5;
 
 // A round number of seconds between ticks that are at least 70 px apart.
 double tick_s(double end_s, float width_px) {
+    constexpr double kSteps_s[] = {0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 60, 120, 300, 600};
     const double least_s = end_s * 70 / std::max(width_px, 70.0f);
-    double step_s = 0.1;
-    for (const double factor : {2.0, 2.5, 2.0})
-        if (step_s < least_s) step_s *= factor;
-    while (step_s < least_s) step_s *= step_s < 60 ? 2 : 2.5;
-    return step_s;
+    for (const double step_s : kSteps_s)
+        if (step_s >= least_s) return step_s;
+    return kSteps_s[std::size(kSteps_s) - 1];
 }
 
 std::string time_text(double seconds) {

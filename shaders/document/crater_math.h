@@ -2,8 +2,7 @@
 //
 // Inputs everywhere: `local`: position from the centre, in units of the crater's radius (x east, y north);
 // `seed`: the crater's; `age`: 0 fresh … 1 weathered. Everything is exactly 0 for |local| >= the reach named beside
-// it. All functions are
-// C1 in position except crater_zone.
+// it. All functions are C1 in position except crater_zone.
 //
 // Profile over rho = |local| / rim(direction): a bowl -d + (d + h) (2 rho^2 - rho^4) up to the crest at rho =
 // 1, then ejecta h (1 - u)^6 (1 + 6 u), which is about rho^-3 (McGetchin et al. 1973) but ends, with slope 0,

@@ -82,6 +82,13 @@ def away(display, window):
     window.settle()
 
 
+def wait_for_command(window, name):
+    while True:
+        command = window.wait_for("command")["command"]
+        if command["cmd"] == name:
+            return command
+
+
 def closed_cleanly(window, display):
     assert window.close(display) == 0, "".join(window.errors)
     assert window.last("closed")["validation_messages"] == 0, "".join(window.errors)
@@ -364,6 +371,43 @@ def test_the_map_is_edited_while_a_layer_is_added(display, project, opened, tmp_
     window.wait_message("Adding layer late")
     closed_cleanly(window, display)
     assert 'name = "late"' not in text.read_text() and sorted((project / "layers").iterdir()) == files
+
+
+def test_an_event_is_placed_played_scrubbed_and_undone(display, project, opened):
+    window = opened()
+    display.key("e")
+    window.settle()
+    away(display, window)
+    start = display.screenshot()
+    spot = place(window, 0.5, 0.7)
+    x, y, w, h = window.last("viewport")["rect"]
+    ruler, left = y + h + 14, 20
+    display.xdotool("mousemove", 500, ruler)  # of the timeline, which the tool brings up
+    display.xdotool("click", 1)
+    scrubbed = window.wait_for("command")
+    assert scrubbed["command"]["cmd"] == "time" and 5 < scrubbed["command"]["time_s"] < 15
+    display.xdotool("mousemove", *spot)
+    window.settle()
+    display.xdotool("click", 1)
+    event = wait_for_command(window, "event")
+    assert event["event"] == "crater" and abs(event["start_s"] - scrubbed["command"]["time_s"]) < 1e-9
+    wait_for_command(window, "time")  # it plays
+    display.key("space")
+    away(display, window)
+    struck = display.screenshot()
+    keep("event.png", struck)
+    assert changed_share(start, struck, spot) > 0.5
+    display.xdotool("mousemove", left, ruler)
+    display.xdotool("click", 1)  # back to the start
+    away(display, window)
+    assert window.commands()[-1] == {"cmd": "time", "time_s": 0.0}
+    assert changed_share(start, display.screenshot(), spot) < 0.02
+    display.key("ctrl+z")
+    away(display, window)
+    display.xdotool("mousemove", 700, ruler)
+    display.xdotool("click", 1)
+    away(display, window)
+    assert changed_share(start, display.screenshot(), spot) < 0.02, "undone at any time"
 
 
 def test_a_hole_is_cut_closed_and_undone(display, project, opened):
