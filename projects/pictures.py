@@ -122,6 +122,21 @@ def imagery_picture(project, folder, path):
     project.set("imagery.file", "")
 
 
+def event_pictures(project, crash, cratered):
+    """A plane has come down; then craters all over its valley, the first ones weathered. Undone afterwards."""
+    x, y = 2100, 2220
+    project.time_s = 0
+    project.event("crash", x=x - 75, y=y - 20, to=(x + 10, y + 15), width_m=6, count=90, start_s=1, seed=3)
+    project.time_s = 12
+    picture(project, look(project, (x + 52, y - 12), (x - 8, y + 10), 17), crash)
+    project.event("barrage", x=x, y=y, radius_m=260, count=420, energy_j=4.184e6 * (9 / 0.4) ** 3, start_s=12, duration_s=60,
+                  weather_s=60, seed=5)
+    project.time_s = 75
+    picture(project, look(project, (x - 60, y - 300), (x, y), 110), cratered)
+    project.undo()
+    project.undo()
+
+
 def noise(shape, cells, random):
     """Smooth noise that repeats, 0 … 1: a few octaves of random values between which cosines lead."""
     out, weight, total = np.zeros(shape), 1.0, 0.0
@@ -193,6 +208,7 @@ def main(source, out):
             imagery_picture(project, folder, f"{out}/imagery.jpg")
             stamp_picture(project, folder, f"{out}/stamps.jpg")
             road_picture(project, f"{out}/road.jpg")
+            event_pictures(project, f"{out}/crash.jpg", f"{out}/cratered.jpg")
             for i, (x, y, r) in enumerate([(2040, 1905, 14), (2075, 1935, 6), (2010, 1940, 9), (2120, 1990, 22)]):
                 project.apply({"cmd": "crater", "x": x, "y": y, "radius_m": r, "seed": 3 + i})
             walk(project, (2004.5, 1855), (2034, 1886))

@@ -46,6 +46,7 @@ Result<BenchReport> bench_cost(const BenchRequest& request);
 Result<BenchReport> bench_crater(const BenchRequest& request);
 Result<BenchReport> bench_edits(const BenchRequest& request);
 Result<BenchReport> bench_encoders(const BenchRequest& request);
+Result<BenchReport> bench_events(const BenchRequest& request);
 Result<BenchReport> bench_feedback(const BenchRequest& request);
 Result<BenchReport> bench_filter(const BenchRequest& request);
 Result<BenchReport> bench_flat(const BenchRequest& request);

@@ -15,6 +15,7 @@
 #include "editor/fill.h"
 #include "editor/session.h"
 #include "editor/window/camera_controller.h"
+#include "editor/window/handles.h"
 #include "editor/window/import_job.h"
 #include "editor/window/tools.h"
 #include "ui/shortcuts.h"
@@ -164,10 +165,13 @@ class App {
     [[nodiscard]] const std::optional<glm::dvec3>& cursor_ground() const { return cursor_; }
     [[nodiscard]] std::optional<ToolController::Ring> ring() const { return ring_; }
     [[nodiscard]] const std::vector<ToolController::Outline>& outlines() const { return outlines_; }
+    // Of the selected operator, and which of them is under the cursor or held; -1: none.
+    [[nodiscard]] const std::vector<Handle>& handles() const { return handles_; }
+    [[nodiscard]] int hot_handle() const { return handle_held_ ? held_handle_ : hot_handle_; }
     [[nodiscard]] bool flying() const { return drag_ == CameraInput::Drag::look; }
     // A frame must follow at once: something moves by itself or is being held down.
     [[nodiscard]] bool busy() const {
-        return playing || filling() || tools.stroking() || camera.moving() ||
+        return playing || handle_held_ || filling() || tools.stroking() || camera.moving() ||
                drag_ != CameraInput::Drag::none;
     }
 
@@ -189,6 +193,10 @@ class App {
     void find_cursor_ground(const ui::ViewportResponse& response);
     CameraInput camera_input(ui::Ui& ui, const ui::ViewportResponse& response, double dt_s);
     void choose_drag(ui::Ui& ui, const ui::ViewportResponse& response);
+    void find_handles(const ui::ViewportResponse& response);
+    void drag_handle(const ui::ViewportResponse& response);
+    [[nodiscard]] double base_height_at(glm::dvec2 at_m) const;  // without operators
+    [[nodiscard]] glm::dvec2 base_place_under(const ui::ViewportResponse& response, glm::dvec2 near_m) const;
 
     void start_import(ImportJob::Steps steps);
 
@@ -213,6 +221,13 @@ class App {
     std::optional<glm::dvec3> cursor_;
     std::optional<ToolController::Ring> ring_;
     std::vector<ToolController::Outline> outlines_;
+    std::vector<Handle> handles_;
+    int hot_handle_ = -1, held_handle_ = -1;
+    bool handle_held_ = false;
+    OperatorShape handle_shape_;  // when it was taken hold of
+    Handle handle_start_;
+    glm::dvec2 handle_to_m_{0}, handle_mouse_m_{0};  // where it is; what of the ground the mouse took hold of
+    uint64_t handle_group_ = 0;
     uint64_t cursor_revision_ = ~uint64_t{0};
     double cursor_time_s_ = 0;
     glm::dvec3 cursor_camera_{0};

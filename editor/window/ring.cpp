@@ -61,17 +61,15 @@ std::vector<glm::dvec3> ring_places(App& app, glm::dvec2 center, double radius) 
 void draw_line(App& app, ui::Ui& ui, const ui::Rect& viewport, const std::vector<glm::dvec3>& places, bool closed,
                double reach_m, ui::Color color) {
     const Camera& camera = app.camera.camera();
-    const glm::dmat4 clip = camera.clip_from_rel(viewport.w, viewport.h);
     const int count = int(places.size());
     std::vector<Corner> corners(places.size());
     for (int i = 0; i < count; ++i) {
         const glm::dvec3 offset = places[size_t(i)] - camera.position_m;
-        const glm::dvec4 c = clip * glm::dvec4(offset, 1);
+        const auto seen = camera.pixel_of(places[size_t(i)], viewport.w, viewport.h);
         Corner& corner = corners[size_t(i)];
-        corner.in_front = c.w > 0.05;
-        if (!corner.in_front) continue;
-        corner.at = {viewport.x + float((c.x / c.w * 0.5 + 0.5) * viewport.w),
-                     viewport.y + float((c.y / c.w * 0.5 + 0.5) * viewport.h)};
+        corner.in_front = seen.has_value();
+        if (!seen) continue;
+        corner.at = {viewport.x + float(seen->x), viewport.y + float(seen->y)};
         if (i % kHiddenEvery != 0) {
             corner.hidden = corners[size_t(i - 1)].hidden;
             continue;
@@ -95,6 +93,30 @@ void draw_line(App& app, ui::Ui& ui, const ui::Rect& viewport, const std::vector
     }
 }
 
+void draw_handles(App& app, ui::Ui& ui, const ui::Rect& viewport) {
+    const Camera& camera = app.camera.camera();
+    const auto pixel_of = [&](glm::dvec2 at) -> std::optional<ui::Vec2> {
+        const auto seen = camera.pixel_of({at, app.height_at(at.x, at.y)}, viewport.w, viewport.h);
+        if (!seen) return {};
+        return ui::Vec2{viewport.x + float(seen->x), viewport.y + float(seen->y)};
+    };
+    const std::vector<Handle>& handles = app.handles();
+    for (int pass = 0; pass < 2; ++pass)  // lines below all dots
+        for (size_t i = 0; i < handles.size(); ++i) {
+            const auto at = pixel_of(handles[i].at_m), from = pixel_of(handles[i].from_m);
+            if (!at) continue;
+            if (pass == 0) {
+                if (from && handles[i].role != Handle::Role::anchor)
+                    ui.draw().line(*from, *at, ui.theme.accent.faded(0.8f), ui.px(1.5f));
+                continue;
+            }
+            const bool hot = int(i) == app.hot_handle(), small = handles[i].role == Handle::Role::tangent;
+            const float radius = ui.px(small ? 4.0f : 6.0f);
+            ui.draw().circle(*at, radius + ui.px(1.5f), ui::Color::hex(0x000000, 150));
+            ui.draw().circle(*at, radius, hot ? ui.theme.text : ui.theme.accent);
+        }
+}
+
 } // namespace
 
 void draw_ring(App& app, ui::Ui& ui, const ui::Rect& viewport) {
@@ -105,6 +127,7 @@ void draw_ring(App& app, ui::Ui& ui, const ui::Rect& viewport) {
         for (const glm::dvec2& at : outline.places_m) places.emplace_back(at, app.height_at(at.x, at.y));
         draw_line(app, ui, viewport, places, outline.closed, app.tools.brush().radius_m, ui::Color::hex(0xffffff, 235));
     }
+    draw_handles(app, ui, viewport);
     if (const auto ring = app.ring()) {
         const double radius = ring->radius_m, inner = radius * ring->inner_share;
         draw_line(app, ui, viewport, ring_places(app, ring->center_m, radius), true, radius,

@@ -104,8 +104,91 @@ void App::find_cursor_ground(const ui::ViewportResponse& response) {
     cursor_ = hit ? *hit : std::nullopt;
 }
 
+double App::base_height_at(glm::dvec2 at_m) const {
+    const Document& document = session.document();
+    const glm::dvec2 place = at_m / document.settings().height_spacing_m, first = glm::floor(place);
+    int32_t mm[4];
+    const auto lock = document.read_lock();
+    document.read_heights_mm(0, int(first.x), int(first.y), 2, 2, mm);
+    const glm::dvec2 f = place - first;
+    return 0.001 * glm::mix(glm::mix(double(mm[0]), double(mm[1]), f.x),
+                            glm::mix(double(mm[2]), double(mm[3]), f.x), f.y);
+}
+
+// Under the mouse on the ground without operators, which does not move under what is dragged; `near_m`: about
+// there. The ray is met by planes as high as the ground is where the last one was.
+glm::dvec2 App::base_place_under(const ui::ViewportResponse& response, glm::dvec2 near_m) const {
+    const Camera& eye = camera.camera();
+    const glm::dvec3 ray = eye.ray(response.mouse.x, response.mouse.y, std::max(1.0f, response.rect.w),
+                                   std::max(1.0f, response.rect.h));
+    constexpr double kLevel = 1e-3;  // such a ray meets the ground too far away to place anything
+    if (ray.z > -kLevel) return near_m;
+    double height_m = base_height_at(near_m);
+    glm::dvec2 place = near_m;
+    for (int i = 0; i < 12; ++i) {
+        const double away_m = (height_m - eye.position_m.z) / ray.z;
+        if (!(away_m > 0)) return near_m;
+        place = glm::dvec2(eye.position_m + ray * away_m);
+        height_m += 0.7 * (base_height_at(place) - height_m);
+    }
+    return place;
+}
+
+// Those of the selected operator, and the nearest to the mouse.
+void App::find_handles(const ui::ViewportResponse& response) {
+    constexpr double kReach_px = 11;
+    handles_.clear();
+    hot_handle_ = -1;
+    const Operator* op = selected_object != 0 && !tools.stroking() ? selected_operator() : nullptr;
+    if (!op) {
+        handle_held_ = false;
+        return;
+    }
+    handles_ = handles_of(op->shape);
+    if (!response.hovered) return;
+    const Camera& eye = camera.camera();
+    double nearest_px = kReach_px;
+    for (size_t i = 0; i < handles_.size(); ++i) {
+        const glm::dvec2 at = handles_[i].at_m;
+        const auto seen = eye.pixel_of({at, height_at(at.x, at.y)}, response.rect.w, response.rect.h);
+        if (!seen) continue;
+        const double away_px = std::hypot(seen->x - response.mouse.x, seen->y - response.mouse.y);
+        if (away_px >= nearest_px) continue;
+        nearest_px = away_px;
+        hot_handle_ = int(i);
+    }
+}
+
+// A handle under the mouse takes the press from the tool; the operator follows it, one step of the history a
+// drag.
+void App::drag_handle(const ui::ViewportResponse& response) {
+    if (response.pressed && tool_drag_ && hot_handle_ >= 0) {
+        handle_held_ = true;
+        held_handle_ = hot_handle_;
+        handle_start_ = handles_[size_t(hot_handle_)];
+        handle_to_m_ = handle_start_.at_m;
+        handle_mouse_m_ = base_place_under(response, handle_to_m_);
+        handle_shape_ = selected_operator()->shape;
+        handle_group_ = session.document().next_group();
+        tool_drag_ = false;
+        return;
+    }
+    if (!handle_held_) return;
+    const glm::dvec2 place = handle_start_.at_m + base_place_under(response, handle_to_m_) - handle_mouse_m_;
+    if (response.held && (response.drag.x != 0 || response.drag.y != 0) && place != handle_to_m_) {
+        handle_to_m_ = place;
+        const glm::dvec3 to(handle_to_m_, base_height_at(handle_to_m_));
+        OperatorShape shape = dragged(handle_shape_, handle_start_, to, base_height_at(handle_start_.at_m));
+        if (!apply({.body = EditOperatorCommand{.id = selected_object, .shape = std::move(shape), .life = {}},
+                    .group = handle_group_}))
+            handle_held_ = false;
+    }
+    if (!response.held) handle_held_ = false;
+}
+
 void App::viewport_input(ui::Ui& ui, const ui::ViewportResponse& response, double dt_s) {
     choose_drag(ui, response);
+    find_handles(response);
     // The drag's pivot is the ground under the cursor at the press; during an orbit the cursor is not asked for.
     if (drag_ != CameraInput::Drag::orbit || response.pressed) find_cursor_ground(response);
     if (camera.update(camera_input(ui, response, dt_s))) {
@@ -113,6 +196,7 @@ void App::viewport_input(ui::Ui& ui, const ui::ViewportResponse& response, doubl
         if (!tool_drag_ && drag_ == CameraInput::Drag::none) find_cursor_ground(response);
     }
 
+    drag_handle(response);
     const ui::Vec2 moved = response.mouse - press_mouse_;
     const ToolInput input{.ground = cursor_,
                           .pressed = response.pressed && tool_drag_,
@@ -127,7 +211,8 @@ void App::viewport_input(ui::Ui& ui, const ui::ViewportResponse& response, doubl
     for (const Command& command : tools.update(input))
         if (apply(command)) event_placed(command);
     if (response.released) tool_drag_ = false;
-    ring_ = drag_ == CameraInput::Drag::none ? tools.ring(input) : std::nullopt;
+    const bool over_handle = handle_held_ || hot_handle_ >= 0;
+    ring_ = drag_ == CameraInput::Drag::none && !over_handle ? tools.ring(input) : std::nullopt;
     outlines_ = tools.outlines(input);
     if (const ObjectRow* selected = selected_object != 0 ? selected_row() : nullptr)
         outlines_.push_back(outline_of(selected->bounds));

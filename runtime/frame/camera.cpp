@@ -31,6 +31,12 @@ glm::dmat4 Camera::clip_from_rel(double width_px, double height_px, glm::dvec2 j
     return glm::transpose(glm::dmat4(row_x, row_y, row_z, row_w));
 }
 
+std::optional<glm::dvec2> Camera::pixel_of(glm::dvec3 at_m, double width_px, double height_px) const {
+    const glm::dvec4 c = clip_from_rel(width_px, height_px) * glm::dvec4(at_m - position_m, 1);
+    if (!(c.w > 0.05)) return {};
+    return glm::dvec2((c.x / c.w * 0.5 + 0.5) * width_px, (c.y / c.w * 0.5 + 0.5) * height_px);
+}
+
 glm::dvec3 Camera::ray(double x_px, double y_px, double width_px, double height_px) const {
     const double tan_half = std::tan(fov_y_rad * 0.5);
     const double x = (x_px / width_px * 2.0 - 1.0) * tan_half * width_px / std::max(height_px, 1.0);

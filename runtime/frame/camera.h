@@ -1,6 +1,8 @@
 // A camera in world metres. Yaw is clockwise from north, pitch is up from the horizon.
 #pragma once
 
+#include <optional>
+
 #include <glm/mat4x4.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
@@ -24,6 +26,9 @@ struct Camera {
                                            glm::dvec2 jitter_px = {0, 0}) const;
     // Direction through a pixel (0,0 = upper left corner of the picture), normalised.
     [[nodiscard]] glm::dvec3 ray(double x_px, double y_px, double width_px, double height_px) const;
+    // Where a place in the world is in the picture; none behind the camera.
+    [[nodiscard]] std::optional<glm::dvec2> pixel_of(glm::dvec3 at_m, double width_px,
+                                                     double height_px) const;
     // Looks from `eye` to `target`; straight up or down keeps the yaw.
     [[nodiscard]] static Camera look_at(glm::dvec3 eye, glm::dvec3 target, double fov_y_rad = 1.0);
 };

@@ -35,6 +35,25 @@ def test_edits(plain):
             assert costs["texture pages dirtied"] > 0 and costs["texture texels"] > 0
 
 
+def test_events(plain):
+    (_, changes), (_, rates), (_, elsewhere), (_, memory), (_, heights), (_, splines), (_, kept) = bench(
+        "events", plain, "--size", "160x90")
+    by_name = {row["change"]: row for row in changes}
+    assert all(row["texture texels"] > 0 for row in changes)
+    assert by_name["it cools, a step"]["height pages"] == 0, "a crater that cools has the ground it had"
+    assert by_name["one footprint"]["texture texels"] < by_name["100 footprints"]["texture texels"]
+    assert [row["prints a second"] for row in rates] == [0, 1, 100, 10000]
+    assert rates[-1]["prints on the map"] > 1000
+    assert [row["operators elsewhere"] for row in elsewhere] == [10, 10000]
+    assert all(row["stored bytes"] < 300 for row in memory)
+    assert [row["parts"] for row in memory][:3] == [1, 1000, 1200]
+    worst = {row["kept as"]: row["worst mm"] for row in heights}
+    assert worst["float32, the cache's"] < 0.05 < worst["float16"]
+    for row in splines:
+        assert row["worst mm"] <= 1000 * row["tolerance m"] * 1.05
+    assert kept[0]["rms of 255"] == 0 and kept[-1]["rms of 255"] > kept[1]["rms of 255"] > 0
+
+
 def test_cost(plain):
     ((_, rows),) = bench("cost", plain, "--size", "192x108")
     assert [(row["layers"], row["decals"]) for row in rows] == [(4, 0), (4, 200)]

@@ -1,11 +1,14 @@
 """Events and lives: the time of the map, what games call for their actors, and that the picture, the query and a ray agree."""
 import json
 import math
+import subprocess
+import sys
 
 import loam
 import numpy as np
 import pytest
-from conftest import fails_with_one_sentence, run_loam
+from conftest import SOURCE, fails_with_one_sentence, run_loam
+from PIL import Image
 
 CAMERA = (128, 40, 60, 0, -30)
 EVENTS = (
@@ -245,3 +248,16 @@ def test_height_is_one_after_events(plain, has_device):
         errors = 6 * np.abs(np.array(near) / np.median(near) - 1)
         assert errors.size > 50
         assert errors.max() < 0.0005
+
+
+def test_the_tour_ends_where_it_began(plain, tmp_path, has_device):
+    """projects/quiet_valley.py on the plain: things happen, and the last picture is the first one."""
+    out = tmp_path / "tour"
+    run = subprocess.run([sys.executable, str(SOURCE / "projects" / "quiet_valley.py"), str(plain), str(out), "--size", "160x90",
+                          "--fps", "1"], capture_output=True, text=True, timeout=300)
+    assert run.returncode == 0, run.stderr
+    pictures = [np.asarray(Image.open(file)).astype(int) for file in sorted(out.glob("tour-*.png"))]
+    assert len(pictures) == 31
+    assert (pictures[0] == pictures[-1]).all()
+    changed = [np.abs(pictures[i] - pictures[0]).mean() for i in (1, 8, 13, 17, 24)]
+    assert changed == sorted(changed) and changed[0] >= 0 and changed[-1] > changed[1] > 0, changed

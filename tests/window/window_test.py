@@ -474,6 +474,16 @@ def test_objects_are_listed_hidden_and_removed(display, project, opened):
     display.click(1140, 430)  # the newest on top: the cutout
     window.settle()
     keep("objects.png", display.screenshot())
+    display.drag(*other, other[0] + 60, other[1] + 20)  # by its handle, although another tool is in hand
+    assert wait_for_command(window, "edit")["kind"] == "cutout"
+    away(display, window)
+    dragged = display.screenshot()
+    keep("dragged.png", dragged)
+    assert changed_share(start, dragged, (other[0] + 60, other[1] + 20), 4) > 0.9
+    groups = {c.get("group") for c in window.commands() if c["cmd"] == "edit"}
+    assert len(groups) == 1, "one step of the history"
+    display.key("ctrl+z")
+    away(display, window)
     display.key("Delete")
     away(display, window)
     removed = display.screenshot()
