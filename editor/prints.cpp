@@ -49,6 +49,8 @@ Result<bool> Prints::lay(Footprint print, double weight_kg, double area_m2) {
     constexpr double kShallowest_m = 0.002;
     if (print.depth_m < kShallowest_m) return false;
     ++count_;
+    if (settings.lifetime_s > 0 && settings.keep > 0 && waiting_.size() >= settings.keep)
+        waiting_.pop_front();
     waiting_.push_back(print);
     return true;
 }
@@ -113,12 +115,23 @@ void Prints::lift(uint64_t actor) {
 }
 
 Result<Dirt> Prints::flush() {
+    return flush(waiting_.size());
+}
+
+Result<Dirt> Prints::flush_for_frame() {
+    return flush(settings.a_frame > 0 ? std::min<size_t>(waiting_.size(), settings.a_frame)
+                                      : waiting_.size());
+}
+
+Result<Dirt> Prints::flush(size_t count) {
     Dirt all;
     Document& document = session_.document();
-    for (size_t first = 0; first < waiting_.size(); first += kMostAtOnce) {
+    while (count > 0) {
         FootprintsCommand command;
-        const size_t end = std::min(first + kMostAtOnce, waiting_.size());
-        command.prints.assign(waiting_.begin() + ptrdiff_t(first), waiting_.begin() + ptrdiff_t(end));
+        const auto end = waiting_.begin() + ptrdiff_t(std::min(count, kMostAtOnce));
+        command.prints.assign(waiting_.begin(), end);
+        waiting_.erase(waiting_.begin(), end);
+        count -= command.prints.size();
         command.life.from_s = document.time_s();
         if (settings.lifetime_s > 0) {
             command.life.until_s = document.time_s() + settings.lifetime_s;
@@ -127,14 +140,10 @@ Result<Dirt> Prints::flush() {
         }
         if (group_ == 0 || document.revision() != revision_) group_ = document.next_group();
         auto dirt = session_.apply({command, group_});
-        if (!dirt) {
-            waiting_.clear();
-            return dirt;
-        }
+        if (!dirt) return dirt;
         append_dirt(all, *dirt);
         revision_ = document.revision();
     }
-    waiting_.clear();
     return all;
 }
 

@@ -1,9 +1,10 @@
 // Prints of moving actors: the calls that a game makes when a foot comes down or a wheel rolls on. They are
-// gathered and laid with the next frame, one command for all of them, so that a crowd costs a command a
-// frame. Source: Call of Duty talk, "Dynamic Decals" (footsteps and treads on snow or sand).
+// gathered and laid with the next frames, one command a frame and a limited number, so that a crowd costs
+// what a frame can give. Source: Call of Duty talk, "Dynamic Decals" (footsteps and treads on snow or sand).
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <unordered_map>
 
 #include "runtime/base/result.h"
@@ -17,6 +18,7 @@ struct PrintSettings {
     double lifetime_s = 180;  // then a print is gone; 0: never
     double fade_s = 60;       // of it the last, in which snow fills it and wind takes it
     uint64_t keep = 10'000;   // prints with a lifetime on the map; the oldest are dropped. 0: any number
+    uint64_t a_frame = 50;    // are laid with a picture, and with a move of the time; the rest waits. 0: all
 };
 
 struct FootDesc {
@@ -47,8 +49,9 @@ class Prints {
     Result<int> tread(uint64_t actor, glm::dvec2 at_m, const TreadDesc& desc);
     void lift(uint64_t actor);  // its next tread begins elsewhere
 
-    // Lays what was gathered. Nothing gathered: nothing happens.
+    // Lays what was gathered, all of it or what a frame may. Nothing gathered: nothing happens.
     Result<Dirt> flush();
+    Result<Dirt> flush_for_frame();
     [[nodiscard]] size_t waiting() const { return waiting_.size(); }
 
   private:
@@ -61,7 +64,9 @@ class Prints {
     Result<bool> lay(Footprint print, double weight_kg, double area_m2);
 
     Session& session_;
-    std::vector<Footprint> waiting_;
+    Result<Dirt> flush(size_t count);
+
+    std::deque<Footprint> waiting_;  // no more than are kept
     std::unordered_map<uint64_t, Wheel> wheels_;
     uint32_t count_ = 0;
     uint64_t group_ = 0;  // of one walk: what is laid until something else is edited is undone together

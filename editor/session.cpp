@@ -112,7 +112,7 @@ FrameSettings reference_frame(FrameSettings frame) {
 Result<Dirt> Session::apply(const Command& command) {
     // What was stepped on before is of the time that was.
     if (std::holds_alternative<TimeCommand>(command.body) && prints_->waiting() > 0) {
-        auto printed = prints_->flush();
+        auto printed = prints_->flush_for_frame();
         if (!printed) return printed;
         auto dirt = apply_one(command);
         if (dirt) append_dirt(*dirt, *printed);
@@ -250,7 +250,7 @@ Result<Picture> Session::supersampled(Renderer& renderer, const RenderRequest& r
 }
 
 Result<Picture> Session::render(const RenderRequest& request) {
-    if (auto laid = prints_->flush(); !laid) return laid.error();
+    if (auto laid = prints_->flush_for_frame(); !laid) return laid.error();
     if (!request.reference) {
         auto renderer = this->renderer();
         if (!renderer) return renderer.error();
@@ -266,7 +266,7 @@ Result<Picture> Session::render(const RenderRequest& request) {
 }
 
 Status Session::step(const Camera& camera, int width, int height, const FrameSettings& settings, int frames) {
-    if (auto laid = prints_->flush(); !laid) return laid.error();
+    if (auto laid = prints_->flush_for_frame(); !laid) return laid.error();
     auto renderer = this->renderer();
     if (!renderer) return renderer.error();
     for (int i = 0; i < frames; ++i)

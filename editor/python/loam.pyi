@@ -23,6 +23,7 @@ class Events:
     lifetime_s: float
     fade_s: float
     keep: int
+    a_frame: int
     @property
     def waiting(self) -> int: ...
     def step(self, actor: int, foot: int, at: Sequence[float], heading_rad: float, length_m: float = 0.3,

@@ -202,7 +202,7 @@ void bind_events(py::module_& module) {
         "The actor's next tread begins where it is then.", py::arg("actor"));
     c.def(
         "flush", [](const Events& e) { return to_python(to_report(unwrap(e.prints().flush()))); },
-        "Lays what was gathered now, which the next picture or move of the time does by itself.");
+        "Lays all that was gathered; pictures and moves of the time lay some by themselves.");
     c.def_property_readonly("waiting", [](const Events& e) { return e.prints().waiting(); });
     const auto number = [&](const char* name, auto member, const char* help) {
         c.def_property(
@@ -216,6 +216,8 @@ void bind_events(py::module_& module) {
     };
     number("lifetime_s", &PrintSettings::lifetime_s, "How long prints last; 0: for ever.");
     number("fade_s", &PrintSettings::fade_s, "Of that the last, in which they fill.");
+    number("a_frame", &PrintSettings::a_frame,
+           "Prints laid with a picture or a move of the time; the rest waits. 0: all.");
     number("keep", &PrintSettings::keep,
            "Prints with a lifetime on the map; the oldest are dropped. 0: any number.");
 }

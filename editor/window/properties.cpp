@@ -255,6 +255,7 @@ void layer_properties(App& app, ui::Ui& ui) {
                                .logarithmic = true,
                                .tooltip = "Metres of ground that its textures cover before they repeat"})
                        .changed;
+    changed |= share_slider(ui, "Softness", entry.softness);  // underfoot
     constexpr std::array<std::string_view, kChannelNames.size()> kLabels = {"Scattering", "Heat", "Emissive",
                                                                             "Glint", "Depth"};
     for (const Channel channel : settings.channels)

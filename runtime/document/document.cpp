@@ -1,5 +1,6 @@
 #include "runtime/document/document.h"
 
+#include <algorithm>
 #include <bit>
 #include <chrono>
 #include <cmath>
@@ -43,6 +44,11 @@ Result<uint64_t> meta_or(PageStore& store, const char* name, uint64_t otherwise)
     const auto value = store.read_meta(name);
     if (!value.ok()) return value.error();
     return value->has_value() ? uint64_t(**value) : otherwise;
+}
+
+bool shows_heat(const ProjectSettings& settings) {
+    return std::any_of(settings.channels.begin(), settings.channels.end(),
+                       [](Channel c) { return c == Channel::thermal || c == Channel::emissive; });
 }
 
 uint64_t digest_of(uint64_t hash, std::span<const uint8_t> bytes) {
@@ -142,6 +148,7 @@ Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& fo
 Status Document::Impl::load() {
     height = height_shape(settings);
     index = index_shape(settings);
+    operators.set_shows_heat(shows_heat(settings));
     return pages->with_store([&](PageStore& reader) -> Status {
         LOAM_TRY(check_identity(reader, settings));
         auto time = reader.read_meta(kTimeMeta);
@@ -263,6 +270,7 @@ Status Document::change_settings(const ProjectSettings& settings) {
     LOAM_TRY(save_project(impl_->folder, settings));
     const Impl::Exclusive lock(*impl_);
     impl_->settings = settings;
+    impl_->operators.set_shows_heat(shows_heat(settings));
     impl_->imagery = std::move(imagery);
     ++impl_->revision;
     return {};
@@ -308,6 +316,9 @@ void Document::operators_over_texture(const WorldRect& rect, std::vector<const O
 }
 void Document::operators_over_cutout(const WorldRect& rect, std::vector<const Operator*>& out) const {
     impl_->operators.over_cutout().query(rect, out);
+}
+void Document::operators_over_ground(const WorldRect& rect, std::vector<const Operator*>& out) const {
+    impl_->operators.over_ground().query(rect, out);
 }
 std::vector<Operator> Document::operators() const {
     const ReadLock lock(impl_->mutex);

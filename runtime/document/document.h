@@ -106,6 +106,8 @@ class Document {
     void operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const;
     void operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const;
     void operators_over_cutout(const WorldRect& rect, std::vector<const Operator*>& out) const;
+    // Those over the texture that look at the ground's heights: volumes and floods.
+    void operators_over_ground(const WorldRect& rect, std::vector<const Operator*>& out) const;
     [[nodiscard]] std::vector<Operator> operators() const;  // a copy, in order (outliner, info)
     [[nodiscard]] std::optional<Operator> find_operator(uint64_t id) const;
     [[nodiscard]] ResolvedRoles roles() const;

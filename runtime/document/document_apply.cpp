@@ -8,6 +8,7 @@
 #include "runtime/base/log.h"
 #include "runtime/document/dirt.h"
 #include "runtime/document/document_impl.h"
+#include "runtime/document/laid_layer.h"
 #include "runtime/document/operator_json.h"
 #include "runtime/document/paint.h"
 #include "runtime/document/sculpt.h"
@@ -127,24 +128,8 @@ void Document::Impl::change_operator(uint64_t id, std::optional<Operator> op, Ch
     change.operators[id] = std::move(op);
 }
 
-namespace {
-
-// The layer that an operator lays, by name, and where its number is kept.
-struct LaidLayer {
-    const std::string* name = nullptr;
-    uint16_t* number = nullptr;
-};
-LaidLayer laid_layer(OperatorShape& shape) {
-    if (auto* stamp = std::get_if<Stamp>(&shape)) return {&stamp->layer, &stamp->layer_number};
-    if (auto* flood = std::get_if<Flood>(&shape)) return {&flood->layer, &flood->layer_number};
-    if (auto* event = std::get_if<Event>(&shape)) return {&event->layer, &event->layer_number};
-    return {};
-}
-
-}  // namespace
-
 Status Document::Impl::give_parts(Operator& op) {
-    if (const LaidLayer laid = laid_layer(op.shape); laid.name && !laid.name->empty()) {
+    if (const LaidLayer laid = laid_layer(op.shape); laid.chosen()) {
         const auto number = layer_number(*laid.name);
         if (!number.ok()) return number.error();
         *laid.number = *number;
@@ -192,15 +177,12 @@ Status Document::Impl::known_layer(const std::string& name) const {
 }
 
 Status Document::Impl::known_parts(const OperatorShape& shape) const {
+    OperatorShape copy = shape;
+    if (const LaidLayer laid = laid_layer(copy); laid.chosen()) LOAM_TRY(known_layer(*laid.name));
     if (const auto* stamp = std::get_if<Stamp>(&shape)) {
-        if (!stamp->layer.empty()) LOAM_TRY(known_layer(stamp->layer));
         const auto picture = stamps->find(stamp->image);
         return picture.ok() ? Status() : picture.error();
     }
-    for (const std::string* layer :
-         {std::holds_alternative<Flood>(shape) ? &std::get<Flood>(shape).layer : nullptr,
-          std::holds_alternative<Event>(shape) ? &std::get<Event>(shape).layer : nullptr})
-        if (layer && !layer->empty()) return known_layer(*layer);
     const DecalMaterial* material = material_of(shape);
     if (!material || material->layer.empty()) return {};
     LOAM_TRY(known_layer(material->layer));

@@ -25,6 +25,10 @@ struct OperatorSet::Held {
 
 namespace {
 
+bool looks_at_ground(const Operator& op) {
+    return std::holds_alternative<VolumeDecal>(op.shape) || std::holds_alternative<Flood>(op.shape);
+}
+
 void append(std::vector<WorldRect>& to, const std::vector<WorldRect>& rects) {
     to.insert(to.end(), rects.begin(), rects.end());
 }
@@ -39,12 +43,12 @@ void add_dirt(const Operator& op, Dirt& dirt) {
 }
 
 // From one state to the next. A crater that only cooled has the ground it had.
-void add_change(const Operator* before, const Operator* after, Dirt& dirt) {
+void add_change(const Operator* before, const Operator* after, bool shows_heat, Dirt& dirt) {
     const Crater* crater = before && after ? std::get_if<Crater>(&before->shape) : nullptr;
     if (crater) {
         const Crater& now = std::get<Crater>(after->shape);
         if (crater->depth_m == now.depth_m && crater->age == now.age && crater->strength == now.strength) {
-            if (!after->enabled) return;
+            if (!after->enabled || !shows_heat) return;
             append(dirt.texture, after->texture_rects());
             dirt.texture_size_m = std::max(dirt.texture_size_m, after->texture_size_m());
             return;
@@ -64,6 +68,7 @@ void OperatorSet::index(const Operator& op) {
     for (const WorldRect& rect : op.index_rects()) index_.add(&op, rect);
     for (const WorldRect& rect : op.texture_rects()) texture_.add(&op, rect);
     for (const WorldRect& rect : op.cutout_rects()) cutout_.add(&op, rect);
+    if (looks_at_ground(op)) ground_.add(&op, op.texture_bounds());
 }
 
 void OperatorSet::unindex(const Operator& op) {
@@ -71,6 +76,7 @@ void OperatorSet::unindex(const Operator& op) {
     for (const WorldRect& rect : op.index_rects()) index_.remove(&op, rect);
     for (const WorldRect& rect : op.texture_rects()) texture_.remove(&op, rect);
     for (const WorldRect& rect : op.cutout_rects()) cutout_.remove(&op, rect);
+    if (looks_at_ground(op)) ground_.remove(&op, op.texture_bounds());
 }
 
 void OperatorSet::show(Shown& shown) {
@@ -141,7 +147,7 @@ void OperatorSet::set_time(double time_s, Dirt& dirt) {
         if (const Operator* op = shown->op()) before = std::make_unique<Operator>(*op);
         hide(*shown);
         show(*shown);
-        add_change(before.get(), shown->op(), dirt);
+        add_change(before.get(), shown->op(), shows_heat_, dirt);
     }
 }
 

@@ -28,6 +28,10 @@ class OperatorSet {
     [[nodiscard]] size_t size() const { return by_id_.size(); }
     [[nodiscard]] std::vector<Operator> sorted() const;  // ascending (order, id)
 
+    // Whether the map shows the heat of craters (it has a channel for it): else one that cools changes
+    // nothing.
+    void set_shows_heat(bool shows) { shows_heat_ = shows; }
+
     [[nodiscard]] double time_s() const { return time_s_; }
     // What is shown otherwise from now on is appended to the dirt.
     void set_time(double time_s, Dirt& dirt);
@@ -38,6 +42,9 @@ class OperatorSet {
     [[nodiscard]] const OperatorIndex& over_index() const { return index_; }
     [[nodiscard]] const OperatorIndex& over_texture() const { return texture_; }
     [[nodiscard]] const OperatorIndex& over_cutout() const { return cutout_; }
+    // Of those over the texture the ones that look at the ground: volumes and floods. A change of heights
+    // reaches far in coarse pages, and asks for these alone.
+    [[nodiscard]] const OperatorIndex& over_ground() const { return ground_; }
 
     // Prints whose life ends some day, the oldest first.
     [[nodiscard]] const std::set<uint64_t>& passing_prints() const { return passing_prints_; }
@@ -59,9 +66,10 @@ class OperatorSet {
     void unindex(const Operator& op);
 
     std::unordered_map<uint64_t, std::unique_ptr<Held>> by_id_;  // pointers stay valid while the map grows
-    OperatorIndex height_, index_, texture_, cutout_;
+    OperatorIndex height_, index_, texture_, cutout_, ground_;
     std::set<uint64_t> passing_prints_;
     double time_s_ = 0;
+    bool shows_heat_ = false;
     Moments by_since_, by_until_;  // of the states shown now, without those that have no beginning or end
 };
 

@@ -7,6 +7,7 @@
 #include "runtime/base/units.h"
 #include "runtime/document/dirt.h"
 #include "runtime/document/document_impl.h"
+#include "runtime/document/laid_layer.h"
 #include "runtime/document/operator_json.h"
 
 namespace loam {
@@ -205,18 +206,15 @@ class Verifier {
             if (material && !material->layer.empty() && !has_layer(material->layer))
                 fail("operator {} is made of the layer \"{}\", which the project does not have", id,
                      material->layer);
-            const auto* flood = op.ok() ? std::get_if<Flood>(&op->shape) : nullptr;
-            const auto* event = op.ok() ? std::get_if<Event>(&op->shape) : nullptr;
-            for (const std::string* layer :
-                 {flood ? &flood->layer : nullptr, event ? &event->layer : nullptr})
-                if (layer && !layer->empty() && !has_layer(*layer))
-                    fail("operator {} lays the layer \"{}\", which the project does not have", id, *layer);
+            if (op.ok()) {
+                OperatorShape shape = op->shape;
+                if (const LaidLayer laid = laid_layer(shape); laid.chosen() && !has_layer(*laid.name))
+                    fail("operator {} lays the layer \"{}\", which the project does not have", id,
+                         *laid.name);
+            }
             if (const auto* stamp = op.ok() ? std::get_if<Stamp>(&op->shape) : nullptr) {
                 if (const auto picture = stamps_.find(stamp->image); !picture.ok())
                     fail("operator {}: {}", id, picture.message());
-                if (!stamp->layer.empty() && !has_layer(stamp->layer))
-                    fail("operator {} lays the layer \"{}\", which the project does not have", id,
-                         stamp->layer);
             }
             return Status();
         });

@@ -491,11 +491,9 @@ void VirtualTexture::on_height_dirt(std::span<const WorldRect> rects) {
         for (const WorldRect& rect : rects) {
             if (rect.empty()) continue;
             const WorldRect changed = extended_beyond_edges(rect, t.document.bounds());
-            t.document.operators_over_texture(changed.grown(reach_m(PageId{})), operators);
+            t.document.operators_over_ground(changed.grown(reach_m(PageId{})), operators);
             for (const Operator* op : operators)
-                if (std::holds_alternative<VolumeDecal>(op->shape) ||
-                    std::holds_alternative<Flood>(op->shape))
-                    volumes.push_back({changed, op->texture_bounds(), op->texture_size_m()});
+                volumes.push_back({changed, op->texture_bounds(), op->texture_size_m()});
         }
     }
     if (volumes.empty()) return;

@@ -240,7 +240,7 @@ def test_height_is_one_after_events(plain, has_device):
                 continue
             height = float(p.height(*at))
             camera = loam.Camera.look_at((*at, height + 6), (at[0], at[1] + 1e-7, height))
-            p.step(camera, 3, size=(33, 33))
+            p.step(camera, 10, size=(33, 33))
             depth = p.ground_buffers(camera, size=(33, 33))["depth"]
             if depth is None:
                 pytest.skip("depth is not read back as floats on this device")
@@ -260,4 +260,4 @@ def test_the_tour_ends_where_it_began(plain, tmp_path, has_device):
     assert len(pictures) == 31
     assert (pictures[0] == pictures[-1]).all()
     changed = [np.abs(pictures[i] - pictures[0]).mean() for i in (1, 8, 13, 17, 24)]
-    assert changed == sorted(changed) and changed[0] >= 0 and changed[-1] > changed[1] > 0, changed
+    assert min(changed) > 0 and changed[1] > 5 * changed[0] and changed[-1] > 10 * changed[1], changed

@@ -175,7 +175,7 @@ TEST(Event, TheTimeIsKeptWithTheProject) {
 // Pages composed, and dirt, follow what changed: the time moves past nothing without cost, and a step of one
 // crater touches only its ground.
 TEST(Event, DirtIsWhatChanged) {
-    MapFixture ground({}, 2);
+    MapFixture ground({.channels = {Channel::emissive}}, 2);
     ground.apply(AddOperatorCommand{Event{.kind = EventKind::crater,
                                           .x_m = 100,
                                           .y_m = 100,
@@ -194,6 +194,12 @@ TEST(Event, DirtIsWhatChanged) {
     EXPECT_TRUE(ground.time(11.6).empty()) << "within a step";
     ground.time(40);
     EXPECT_TRUE(ground.time(1000).empty()) << "all is over";
+
+    MapFixture cold({}, 2);  // without a channel that shows heat
+    cold.apply(AddOperatorCommand{
+        Event{.kind = EventKind::crater, .x_m = 100, .y_m = 100, .start_s = 10, .cool_s = 16}, {}});
+    EXPECT_FALSE(cold.time(10.5).empty());
+    EXPECT_TRUE(cold.time(20).empty());
 }
 
 TEST(Event, LandslidesKeepTheirMass) {
