@@ -42,7 +42,7 @@ def test_events(plain):
     assert all(row["texture texels"] > 0 for row in changes)
     assert by_name["one footprint"]["texture texels"] < by_name["100 footprints"]["texture texels"]
     assert [row["prints a second"] for row in rates] == [0, 1, 100, 10000]
-    assert rates[-1]["prints waiting"] > 1000 > rates[-1]["prints on the map"] > 0, "a frame lays what it can"
+    assert rates[-1]["prints waiting"] > 1000 and 0 < rates[-1]["prints on the map"] < 2000, "a frame lays what it can"
     assert [row["operators elsewhere"] for row in elsewhere] == [15, 15000]
     assert all(row["stored bytes"] < 300 for row in memory)
     assert [row["parts"] for row in memory][:3] == [1, 1000, 1200]
