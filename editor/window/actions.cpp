@@ -157,7 +157,12 @@ void App::run(std::string_view action, ui::Ui& ui) {
 void App::handle_keys(const std::vector<ui::Event>& keys, ui::Ui& ui) {
     for (const ui::Event& event : keys) {
         if (!event.down) continue;
-        if (event.key == Key::escape && (tools.stroking() || tools.drawing_road())) tools.cancel();
+        if (event.key == Key::escape) {
+            if (tools.stroking() || tools.drawing_road())
+                tools.cancel();
+            else
+                selected_object = 0;
+        }
         if (event.key == Key::enter && tools.tool == Tool::road)
             if (const auto command = tools.end_road()) apply(*command);
         const auto action = shortcuts.find(event.key, event.mods);

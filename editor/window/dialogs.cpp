@@ -13,7 +13,7 @@ constexpr std::string_view kHelp[][2] = {
     {"Ctrl and wheel, [ and ]", "size of the brush"},
     {"Shift and [ and ]", "strength"},
     {"1 … 9, 0, C, E", "tools; also R, L, B"},
-    {"Enter, Escape", "end the road that is being drawn, drop it"},
+    {"Enter, Escape", "end the road that is being drawn, drop it; let go of the chosen object"},
     {"Ctrl while pressing", "raise: lower; flatten: pick a height; paint: pick a layer; cutout: close"},
     {"Shift while pressing", "smooth"},
     {", and .", "previous and next layer"},

@@ -72,11 +72,12 @@ void view_menu(App& app, ui::Ui& ui) {
                 app.view.shading == Shading::direct);
     resolution_items(app, ui);
     ui::menu_separator(ui);
-    action_item(app, ui, "Timeline", "timeline", ui::Icon::none, true, app.show_timeline);
     if (ui::menu_item(ui, {.label = "Brush outline", .checked = app.view.show_ring}))
         app.view.show_ring = !app.view.show_ring;
     ui::menu_separator(ui);
     quality_items(app, ui);
+    ui::menu_separator(ui);
+    action_item(app, ui, "Timeline", "timeline", ui::Icon::none, true, app.show_timeline);
 }
 
 void debug_menu(App& app, ui::Ui& ui) {

@@ -92,7 +92,7 @@ def test_live_amounts_and_what_covers_them(ice, has_device):
         assert error(seen(), plain) < 0.2
         for name, value, sentence in (("layer.slab.depth", "2", "depth"), ("layer.slab.depth", "deep", "must be a number"),
                                       ("layer.slob.depth", "1", "no layer \"slob\""), ("layer.slab", "1", "no setting"),
-                                      ("layer.slab.colour", "1", "known: tile_m, scattering")):
+                                      ("layer.slab.colour", "1", "known: tile_m, softness, scattering")):
             with pytest.raises(loam.Error, match=sentence):
                 p.set(name, value)
 
