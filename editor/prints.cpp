@@ -83,7 +83,7 @@ Result<int> Prints::tread(uint64_t actor, glm::dvec2 at_m, const TreadDesc& desc
     const glm::dvec2 way = at_m - wheel.at_m;
     const double length_m = glm::length(way);
     if (fresh || length_m > kLeap_m) {
-        wheel = {.at_m = at_m, .pieces = wheel.pieces};
+        wheel = {.at_m = at_m};
         return 0;
     }
     if (length_m == 0) return 0;

@@ -42,7 +42,7 @@ class Prints {
     PrintSettings settings;
 
     // A foot comes down: 0 left, 1 right. No print where the ground is hard; whether there is one is the
-    // answer.
+    // answer. Of the actor nothing is kept: a foot leaves its print wherever it comes down.
     Result<bool> step(uint64_t actor, int foot, glm::dvec2 at_m, double heading_rad, const FootDesc& desc);
     // The actor's axle is here now: tracks from where it was at its last call. How many pieces there are is
     // the answer. The first call, and one after a leap of more than 20 m, only says where it is.
@@ -58,14 +58,13 @@ class Prints {
     struct Wheel {
         glm::dvec2 at_m{0, 0};
         double carry_m = 0;  // since the last piece
-        uint32_t pieces = 0;
     };
     Result<double> softness_at(glm::dvec2 at_m);
     Result<bool> lay(Footprint print, double weight_kg, double area_m2);
 
-    Session& session_;
     Result<Dirt> flush(size_t count);
 
+    Session& session_;
     std::deque<Footprint> waiting_;  // no more than are kept
     std::unordered_map<uint64_t, Wheel> wheels_;
     uint32_t count_ = 0;

@@ -361,11 +361,6 @@ Result<BenchTable> dropped(const BenchRequest& request) {
                                   .life = {.from_s = 0, .until_s = 1000}};
         command.keep = keep;
         if (auto dirt = (*session)->apply({command}); !dirt) return dirt.error();
-        if (keep != 0) {  // the budget looks at what was there before
-            FootprintsCommand one{
-                .prints = prints_around(middle, 1, 8, 2000), .life = command.life, .keep = keep};
-            if (auto dirt = (*session)->apply({one}); !dirt) return dirt.error();
-        }
         const double start_ms = now_ms();
         auto picture = (*session)->render({.camera = view, .width = request.width, .height = request.height});
         if (!picture) return picture.error();

@@ -39,9 +39,11 @@
 //    "weather_s":0,"seed":1}
 //       others: crater_line with "to":[x,y] and "count"; barrage with "radius_m" and "count"; crash with
 //       "to", "width_m" and "count"; landslide with "to" (without: downhill), "radius_m" and "volume_m3";
-//       flood with "radius_m", "level_m", "from_m" and "layer"  (event.h) LIFE, of all operators but events:
-//       "life":{"from_s":0,"until_s":60,"rise_s":0,"fade_s":0,"cool_s":0, "weather_s":0}  (life.h); an edit
-//       without one keeps what there is
+//       flood with "radius_m", "level_m", "from_m" and "layer"  (event.h)
+//
+//   LIFE, of all operators but events: "life":{"from_s":0,"until_s":60,"rise_s":0,"fade_s":0,"cool_s":0,
+//       "weather_s":0}  (life.h); an edit without one keeps what there is
+//
 //   {"cmd":"transition","name":"edge","from":"grass","to":"rock","threshold":0.5}   makes one, or changes
 //   what is
 //       given of it; {"cmd":"transition","name":"edge","remove":true}   (transitions.h)

@@ -207,11 +207,14 @@ Status Document::Impl::compute(const CraterCommand& command, Change& change) {
 }
 
 Status Document::Impl::compute(const FootprintsCommand& command, Change& change) {
-    for (const Footprint& print : command.prints) add_operator(print, command.life, change);
+    const bool ends = command.life.until_s < Life::kEver_s;
+    const size_t laid = ends && command.keep > 0 ? std::min<size_t>(command.prints.size(), command.keep)
+                                                 : command.prints.size();
+    for (size_t i = command.prints.size() - laid; i < command.prints.size(); ++i)
+        add_operator(command.prints[i], command.life, change);
     if (command.keep == 0) return {};
     const auto& passing = operators.passing_prints();
-    const size_t ending = command.life.until_s < Life::kEver_s ? command.prints.size() : 0;
-    size_t many = passing.size() + ending;
+    size_t many = passing.size() + (ends ? laid : 0);
     for (auto oldest = passing.begin(); many > command.keep && oldest != passing.end(); ++oldest, --many)
         change_operator(*oldest, std::nullopt, change);
     return {};
