@@ -26,6 +26,31 @@ Json to_report(const Dirt& dirt) {
             {"cutout", rects(dirt.cutout)}};
 }
 
+Json function_report(FunctionLibrary& functions) {
+    Json list = Json::array();
+    for (const std::string& name : functions.names()) {
+        const auto function = functions.find(name);
+        Json entry = {{"name", name}};
+        if (function) {
+            entry["says"] = (*function)->says;
+            entry["steps"] = (*function)->steps;
+            entry["parameters"] = Json::object();
+            for (const FunctionParameter& p : (*function)->parameters)
+                entry["parameters"][p.name] = {
+                    {"value", p.value}, {"min", p.min}, {"max", p.max}, {"says", p.says}};
+        }
+        list.push_back(std::move(entry));
+    }
+    const auto errors = functions.errors();
+    const auto failed = functions.failed_texels();
+    for (Json& entry : list) {
+        const std::string name = entry["name"];
+        if (const auto wrong = errors.find(name); wrong != errors.end()) entry["error"] = wrong->second;
+        if (const auto texels = failed.find(name); texels != failed.end()) entry["failed_texels"] = texels->second;
+    }
+    return list;
+}
+
 Json to_report(const WeightsReport& r) {
     Json shares = Json::array();
     for (const auto& share : r.shares)

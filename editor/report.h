@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "editor/session.h"
+#include "runtime/document/function_library.h"
 
 namespace loam {
 
@@ -15,6 +16,8 @@ using Json = nlohmann::ordered_json;
 [[nodiscard]] Json to_report(const FrameStatistics& statistics);
 [[nodiscard]] Json to_report(const VirtualTexture::Statistics& statistics);
 [[nodiscard]] Json to_report(const WeightsReport& report);
+// Of the functions of decals: what each is, its parameters, and what is wrong with it.
+[[nodiscard]] Json function_report(FunctionLibrary& functions);
 [[nodiscard]] Json memory_report(Session& session);  // needs a device
 
 }  // namespace loam

@@ -134,10 +134,8 @@ Result<Dirt> Session::apply(const Command& command) {
 Result<Dirt> Session::apply_one(const Command& command) {
     auto dirt = document_->apply(command);
     if (!dirt) return dirt;
-    if (renderer_) renderer_->on_dirt(*dirt);
+    spread(*dirt);
     if (renderer_ && dirt->layers) LOAM_TRY(renderer_->settings_changed(*ring_));
-    if (query_heights_) query_heights_->on_dirt(dirt->height);
-    if (query_indices_) query_indices_->on_dirt(dirt->index);
     if (recorder_) {
         const std::string line = to_json(command) + "\n";
         if (std::fputs(line.c_str(), recorder_->file) < 0 || std::fflush(recorder_->file) != 0) {
@@ -146,6 +144,18 @@ Result<Dirt> Session::apply_one(const Command& command) {
             recorder_.reset();
         }
     }
+    return dirt;
+}
+
+void Session::spread(const Dirt& dirt) {
+    if (renderer_) renderer_->on_dirt(dirt);
+    if (query_heights_) query_heights_->on_dirt(dirt.height);
+    if (query_indices_) query_indices_->on_dirt(dirt.index);
+}
+
+Dirt Session::poll_functions() {
+    Dirt dirt = document_->poll_functions();
+    spread(dirt);
     return dirt;
 }
 
@@ -172,8 +182,7 @@ Result<WeightsReport> Session::import_weights(const WeightsRequest& request, con
     auto report = loam::import_weights(*document_, request, progress);
     if (!report) return report;
     const Dirt dirt{.height = {}, .index = {document_->bounds()}, .texture = {}};
-    if (renderer_) renderer_->on_dirt(dirt);
-    if (query_indices_) query_indices_->on_dirt(dirt.index);
+    spread(dirt);
     return report;
 }
 

@@ -81,6 +81,8 @@ class Session {
     // is a group of them (fill.h).
     Result<Dirt> apply(const Command& command);
     Result<Dirt> apply_one(const Command& command);
+    // Document::poll_functions, and what is rendered from now on.
+    Dirt poll_functions();
     // Settings that may change (sun, ground, layers): the document's, and what is rendered from now on.
     Status change_settings(const ProjectSettings& settings);
     // The layer can be painted with, and is drawn, once this returns; a renderer loads the layers again.
@@ -122,6 +124,7 @@ class Session {
   private:
     Session();
     Status make_device();
+    void spread(const Dirt& dirt);
     Status make_query_maps();  // for the queries of a session that has no renderer
     // Frames of `renderer` from one camera until another would not improve the picture; then the picture.
     Result<Picture> settle(Renderer& renderer, const RenderRequest& request, const FrameSettings& frame);

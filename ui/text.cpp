@@ -43,7 +43,7 @@ char32_t printable(char32_t c) {
 
 struct Text::Fonts {
     FT_Library library = nullptr;
-    std::vector<FT_Face> faces;  // regular, medium, semibold, fallbacks …
+    std::vector<FT_Face> faces;  // by Weight, then fallbacks …
     std::vector<std::string> paths;
     std::map<std::pair<int, long>, SizedFace> sized;  // own FT_Face a size: no size switching
     hb_buffer_t* buffer = nullptr;
@@ -112,6 +112,7 @@ FontFiles default_font_files() {
         .regular = {inter + "Regular.otf", dejavu + ".ttf"},
         .medium = {inter + "Medium.otf", inter + "Regular.otf", dejavu + ".ttf"},
         .semibold = {inter + "SemiBold.otf", inter + "Regular.otf", dejavu + "-Bold.ttf", dejavu + ".ttf"},
+        .mono = {dejavu + "Mono.ttf", dejavu + ".ttf", inter + "Regular.otf"},
         .fallbacks = {dejavu + ".ttf"}};
 }
 
@@ -123,7 +124,7 @@ Result<std::unique_ptr<Text>> Text::create(const FontFiles& files) {
     Fonts& fonts = *text->fonts_;
     if (FT_Init_FreeType(&fonts.library) != 0) return error("cannot initialise FreeType");
     fonts.buffer = hb_buffer_create();
-    for (const auto* candidates : {&files.regular, &files.medium, &files.semibold})
+    for (const auto* candidates : {&files.regular, &files.medium, &files.semibold, &files.mono})
         if (!fonts.open_first(*candidates)) {
             std::string tried;
             for (const std::string& path : *candidates) tried += (tried.empty() ? "" : ", ") + path;

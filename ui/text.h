@@ -19,7 +19,7 @@
 
 namespace loam::ui {
 
-enum class Weight : uint8_t { regular, medium, semibold };
+enum class Weight : uint8_t { regular, medium, semibold, mono };  // mono: of one width, for code
 
 struct TextStyle {
     Weight weight = Weight::regular;
@@ -28,7 +28,7 @@ struct TextStyle {
 };
 
 struct FontFiles {
-    std::vector<std::string> regular{}, medium{}, semibold{};  // candidates, the first that opens is taken
+    std::vector<std::string> regular{}, medium{}, semibold{}, mono{};  // candidates, the first that opens is taken
     std::vector<std::string> fallbacks{};                  // asked in order for glyphs the first lacks
 };
 [[nodiscard]] FontFiles default_font_files();

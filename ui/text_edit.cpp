@@ -19,6 +19,7 @@ bool is_word(char c) {
 }  // namespace
 
 void TextEdit::set_text(std::string_view text) {
+    column_ = std::string::npos;
     text_ = text;
     caret_ = anchor_ = text_.size();
     undo_.clear();
@@ -32,6 +33,7 @@ std::string_view TextEdit::selected() const {
 
 size_t TextEdit::before(size_t at, Step step) const {
     if (step == Step::all) return 0;
+    if (step == Step::line) return line_begin(at);
     if (step == Step::codepoint) return previous_codepoint(text_, at);
     while (at > 0 && !is_word(text_[at - 1])) --at;
     while (at > 0 && is_word(text_[at - 1])) --at;
@@ -40,13 +42,38 @@ size_t TextEdit::before(size_t at, Step step) const {
 
 size_t TextEdit::after(size_t at, Step step) const {
     if (step == Step::all) return text_.size();
+    if (step == Step::line) return line_end(at);
     if (step == Step::codepoint) return next_codepoint(text_, at);
     while (at < text_.size() && is_word(text_[at])) ++at;
     while (at < text_.size() && !is_word(text_[at])) ++at;
     return at;
 }
 
+size_t TextEdit::line_begin(size_t byte) const {
+    const size_t found = byte == 0 ? std::string::npos : text_.rfind('\n', byte - 1);
+    return found == std::string::npos ? 0 : found + 1;
+}
+
+size_t TextEdit::line_end(size_t byte) const {
+    return std::min(text_.find('\n', byte), text_.size());
+}
+
+void TextEdit::move_lines(int lines, Select select) {
+    size_t begin = line_begin(caret_), column = 0;
+    for (size_t at = begin; at < caret_; at = next_codepoint(text_, at)) ++column;
+    if (column_ != std::string::npos) column = column_;
+    last_ = Kind::none;
+    for (; lines < 0 && begin > 0; ++lines) begin = line_begin(begin - 1);
+    for (; lines > 0 && line_end(begin) < text_.size(); --lines) begin = line_end(begin) + 1;
+    const size_t end = line_end(begin);
+    caret_ = begin;
+    for (size_t i = 0; i < column && caret_ < end; ++i) caret_ = next_codepoint(text_, caret_);
+    column_ = column;
+    if (select == Select::no) anchor_ = caret_;
+}
+
 void TextEdit::move_back(Step step, Select select) {
+    column_ = std::string::npos;
     last_ = Kind::none;
     const bool collapse = select == Select::no && has_selection() && step == Step::codepoint;
     caret_ = collapse ? selection_begin() : before(caret_, step);
@@ -54,6 +81,7 @@ void TextEdit::move_back(Step step, Select select) {
 }
 
 void TextEdit::move_on(Step step, Select select) {
+    column_ = std::string::npos;
     last_ = Kind::none;
     const bool collapse = select == Select::no && has_selection() && step == Step::codepoint;
     caret_ = collapse ? selection_end() : after(caret_, step);
@@ -61,6 +89,7 @@ void TextEdit::move_on(Step step, Select select) {
 }
 
 void TextEdit::place(size_t byte, Select select) {
+    column_ = std::string::npos;
     last_ = Kind::none;
     size_t at = 0;
     while (at < text_.size() && next_codepoint(text_, at) <= byte) at = next_codepoint(text_, at);
@@ -89,6 +118,7 @@ void TextEdit::remember(Kind kind) {
 }
 
 void TextEdit::replace(size_t begin, size_t end, std::string_view with) {
+    column_ = std::string::npos;
     text_.replace(begin, end - begin, with);
     caret_ = anchor_ = begin + with.size();
 }
@@ -100,16 +130,25 @@ void TextEdit::insert(std::string_view utf8) {
     for (size_t at = 0; at < utf8.size();) {
         const Decoded d = decode_utf8(utf8, at);
         at += d.bytes;
-        const char32_t c = d.codepoint == U'\n' || d.codepoint == U'\t' ? U' ' : d.codepoint;
-        if (c < 0x20 || c == 0x7F) continue;
+        const bool breaks = d.codepoint == U'\n';
+        const char32_t c = (breaks && !many_lines) || d.codepoint == U'\t' ? U' ' : d.codepoint;
+        if ((c < 0x20 && !(breaks && many_lines)) || c == 0x7F) continue;
         std::string one;
         append_utf8(one, c);
+        if (many_lines && d.codepoint == U'\t') one = "    ";
         if (clean.size() + one.size() > room) break;
         clean += one;
     }
     if (clean.empty()) return;
     remember(has_selection() || utf8.size() > 4 ? Kind::other : Kind::typing);
     replace(selection_begin(), selection_end(), clean);
+}
+
+void TextEdit::insert_line_break() {
+    const size_t begin = line_begin(selection_begin());
+    size_t end = begin;
+    while (end < selection_begin() && text_[end] == ' ') ++end;
+    insert("\n" + text_.substr(begin, end - begin));
 }
 
 void TextEdit::erase_back(Step step) {
@@ -131,6 +170,7 @@ void TextEdit::erase_on(Step step) {
 bool TextEdit::undo() {
     if (undo_.empty()) return false;
     redo_.push_back({text_, caret_});
+    column_ = std::string::npos;
     text_ = undo_.back().text;
     caret_ = anchor_ = undo_.back().caret;
     undo_.pop_back();
@@ -141,6 +181,7 @@ bool TextEdit::undo() {
 bool TextEdit::redo() {
     if (redo_.empty()) return false;
     undo_.push_back({text_, caret_});
+    column_ = std::string::npos;
     text_ = redo_.back().text;
     caret_ = anchor_ = redo_.back().caret;
     redo_.pop_back();

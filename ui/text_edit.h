@@ -1,5 +1,5 @@
-// Editing one line of text: the model of text fields, without drawing. Offsets are bytes and always on code
-// points.
+// Editing text, one line or many: the model of text fields and areas, without drawing. Offsets are bytes and
+// always on code points.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace loam::ui {
 
-enum class Step { codepoint, word, all };
+enum class Step { codepoint, word, line, all };  // line: to its end
 enum class Select { no, yes };  // whether a movement extends the selection
 
 class TextEdit {
@@ -24,17 +24,23 @@ class TextEdit {
     void move_back(Step step, Select select);
     void move_on(Step step, Select select);
     void place(size_t byte, Select select);  // snapped back to a code point
+    void move_lines(int lines, Select select);  // up is negative; the column stays where it can
     void select_all();
     void select_word(size_t byte);
 
-    void insert(
-        std::string_view utf8);  // replaces the selection; line breaks become spaces, controls are dropped
+    // Replaces the selection; controls are dropped, tabs become spaces, and so do line breaks but in many lines.
+    void insert(std::string_view utf8);
+    void insert_line_break();  // the new line begins as far in as this one
     void erase_back(Step step);
     void erase_on(Step step);
     bool undo();
     bool redo();
 
+    [[nodiscard]] size_t line_begin(size_t byte) const;
+    [[nodiscard]] size_t line_end(size_t byte) const;
+
     size_t max_bytes = 4096;
+    bool many_lines = false;
 
   private:
     struct Snapshot {
@@ -49,6 +55,7 @@ class TextEdit {
 
     std::string text_{};
     size_t caret_ = 0, anchor_ = 0;
+    size_t column_ = std::string::npos;  // that move_lines aims at; npos: the caret's
     std::vector<Snapshot> undo_, redo_;
     Kind last_ = Kind::none;
 };

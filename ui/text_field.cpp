@@ -2,80 +2,10 @@
 
 #include <cmath>
 
+#include "ui/edit_keys.h"
 #include "ui/utf8.h"
 
 namespace loam::ui {
-namespace {
-
-void copy_selection(Ui& ui, const TextEdit& edit) {
-    if (edit.has_selection() && ui.clipboard.set) ui.clipboard.set(ui.clipboard.user, edit.selected());
-}
-
-// True when the key belonged to the field.
-bool apply_key(Ui& ui, const Event& e, TextEdit& edit, LineResult& result) {
-    const Select select = e.mods.shift ? Select::yes : Select::no;
-    const Step step = e.mods.ctrl ? Step::word : Step::codepoint;
-    if (e.mods.alt || e.mods.super) return false;
-    switch (e.key) {
-        case Key::left:
-            edit.move_back(step, select);
-            return true;
-        case Key::right:
-            edit.move_on(step, select);
-            return true;
-        case Key::home:
-        case Key::up:
-            edit.move_back(Step::all, select);
-            return true;
-        case Key::end:
-        case Key::down:
-            edit.move_on(Step::all, select);
-            return true;
-        case Key::backspace:
-            edit.erase_back(step);
-            return true;
-        case Key::del:
-            edit.erase_on(step);
-            return true;
-        case Key::enter:
-            result.accepted = true;
-            return true;
-        case Key::escape:
-            result.cancelled = true;
-            return true;
-        case Key::tab:
-            return false;
-        default:
-            break;
-    }
-    if (!e.mods.ctrl) return e.key < Key::f1 || e.key > Key::f12;  // its character follows as a text event
-    switch (e.key) {
-        case Key::a:
-            edit.select_all();
-            return true;
-        case Key::c:
-            copy_selection(ui, edit);
-            return true;
-        case Key::x:
-            copy_selection(ui, edit);
-            if (edit.has_selection()) edit.erase_back(Step::codepoint);
-            return true;
-        case Key::v:
-            if (ui.clipboard.get) edit.insert(ui.clipboard.get(ui.clipboard.user));
-            return true;
-        case Key::z:
-            e.mods.shift ? edit.redo() : edit.undo();
-            return true;
-        case Key::y:
-            edit.redo();
-            return true;
-        default:
-            return false;
-    }
-}
-
-}  // namespace
-
 LineResult edit_line(Ui& ui, const Response& field, const Rect& area, LineState& line) {
     LineResult result;
     TextEdit& edit = line.edit;
@@ -89,7 +19,10 @@ LineResult edit_line(Ui& ui, const Response& field, const Rect& area, LineState&
             edit.insert(character);
             k.used = true;
         } else {
-            k.used = apply_key(ui, k.event, edit, result);
+            const EditKey key = apply_edit_key(ui, k.event, edit);
+            result.accepted = key == EditKey::accepted;
+            result.cancelled = key == EditKey::cancelled;
+            k.used = key != EditKey::not_ours;
         }
     }
     const float origin = area.x - line.scroll_px;

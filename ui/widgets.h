@@ -7,6 +7,7 @@
 #include "ui/panel.h"
 #include "ui/shortcuts.h"
 #include "ui/slider.h"
+#include "ui/text_area.h"
 #include "ui/text_field.h"
 #include "ui/tiles.h"
 #include "ui/ui.h"

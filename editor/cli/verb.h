@@ -36,6 +36,7 @@ struct Verb {
 [[nodiscard]] Verb bench_verb();
 [[nodiscard]] Verb layer_verb();
 [[nodiscard]] Verb stamp_verb();
+[[nodiscard]] Verb function_verb();
 [[nodiscard]] Verb imagery_verb();
 [[nodiscard]] Verb weights_verb();
 [[nodiscard]] Verb pack_verb();

@@ -430,6 +430,24 @@ void bind_edits(py::class_<Project>& c) {
     c.def(
         "stamps", [](Project& p) { return p.session().document().stamps(); },
         "Names of the project's stamps.");
+    c.def(
+        "functions",
+        [](Project& p) { return to_python(function_report(p.session().document().functions())); },
+        "The functions that decals can be made by: name, says, steps, parameters (value, min, max, says), and where "
+        "something is wrong error and failed_texels.");
+    c.def(
+        "function_text",
+        [](Project& p, const std::string& name) { return unwrap(p.session().document().functions().text(name)); },
+        "The text of a function.", py::arg("name"));
+    c.def(
+        "set_function",
+        [](Project& p, const std::string& name, const std::string& text) {
+            return p.apply_json({{"cmd", "function"}, {"name", name}, {"text", text}});
+        },
+        "Saves and shows the text of a function once it compiles.", py::arg("name"), py::arg("text"));
+    c.def(
+        "poll_functions", [](Project& p) { return to_python(to_report(p.session().poll_functions())); },
+        "Shows texts of functions that another program has saved meanwhile.");
     c.def("edit_operator", &edit_operator, "Changes parameters of an operator; the rest stay.",
           py::arg("id"));
     c.def(

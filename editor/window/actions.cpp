@@ -35,6 +35,7 @@ constexpr Bound kBound[] = {
     {"event", Key::e, {}},
     {"play", Key::space, {}},
     {"timeline", Key::t, {}},
+    {"functions", Key::f4, {}},
     {"raise", Key::r, {}},
     {"lower", Key::l, {}},
     {"paint", Key::b, {}},
@@ -84,6 +85,10 @@ void App::run(std::string_view action, ui::Ui& ui) {
     if (action == "play") return play(!playing);
     if (action == "timeline") {
         show_timeline = !show_timeline;
+        return;
+    }
+    if (action == "functions") {
+        show_functions = !show_functions;
         return;
     }
     if (action == "undo") return undo_step();

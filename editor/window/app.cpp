@@ -40,6 +40,7 @@ struct Titles {
         return fmt::format("{} {}", c.remove ? "Remove" : "Transition", c.name);
     }
     std::string operator()(const TimeCommand& c) const { return fmt::format("Time {:.1f} s", c.time_s); }
+    std::string operator()(const FunctionCommand& c) const { return "Function " + c.name; }
     std::string operator()(const UndoCommand&) const { return "Undo"; }
     std::string operator()(const RedoCommand&) const { return "Redo"; }
 };

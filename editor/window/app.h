@@ -61,6 +61,15 @@ struct ObjectRow {  // of the outliner
     double from_s = 0, moved_s = 0, until_s = 0;
 };
 
+// The text of a decals' function that is being written.
+struct FunctionText {
+    std::string name, text;
+    std::string saved;  // as it is in the project, and on the ground
+    std::string tried;  // that was compiled last
+    std::string error;  // of it
+    double changed_s = 0;
+};
+
 // Asked for by actions, done by the window's loop between two frames.
 struct Wish {
     enum class Kind { none, open_project, export_picture };
@@ -142,6 +151,18 @@ class App {
 
     [[nodiscard]] const Operator* selected_operator();  // null: none
 
+    // A new shape of the selected operator, while a slider is dragged; none: nothing was changed.
+    void edit_selected(const std::optional<OperatorShape>& shape, ui::Ui& ui);
+
+    // --- functions of decals (function_panel.cpp) ---
+    bool show_functions = false;
+    FunctionText functions;
+    std::string new_function_name;  // of the dialog
+    [[nodiscard]] const std::vector<std::string>& function_names();
+    void edit_function(const std::string& name);  // in the panel; what was written there before is kept
+    void try_function();                          // saves and shows the text if it compiles
+    void poll_functions();                        // twice a second
+
     // --- the time (timeline.cpp) ---
     bool show_timeline = false;
     bool playing = false;
@@ -184,6 +205,7 @@ class App {
     // True once after the scene changed in a way that a new picture shows.
     [[nodiscard]] bool take_scene_changed() { return std::exchange(scene_changed_, false); }
     void scene_changed() { scene_changed_ = true; }
+    [[nodiscard]] bool scene_is_changed() const { return scene_changed_; }
     [[nodiscard]] bool take_settings_changed() { return std::exchange(settings_changed_, false); }
     [[nodiscard]] bool take_quality_changed() { return std::exchange(quality_changed_, false); }
     std::function<void(const Command&)> on_command; // after it was committed
@@ -212,6 +234,9 @@ class App {
     std::optional<Operator> selected_operator_;
     uint64_t selected_operator_revision_ = ~uint64_t{0};
     void read_layer_names();
+    std::vector<std::string> function_names_;
+    uint64_t function_names_revision_ = ~uint64_t{0};
+    std::map<std::string, std::string> function_drafts_;  // that do not compile yet
 
     bool scene_changed_ = true, settings_changed_ = false, quality_changed_ = false;
 

@@ -20,6 +20,7 @@ constexpr std::string_view kHelp[][2] = {
     {"F, Home", "frame the spot under the cursor, the whole map"},
     {"Ctrl+F", "fill the map as the paint tool is set"},
     {"Space, T", "play the time or stop it, show the timeline"},
+    {"F4", "write the functions of decals"},
     {"Left button on a dot", "move, turn or size the object chosen in the list"},
     {"Delete", "remove the object chosen in the list"},
     {"Ctrl+Z, Ctrl+Y", "undo, redo"},
@@ -137,6 +138,7 @@ void build_dialogs(App& app, ui::Ui& ui) {
     export_dialog(app, ui);
     add_layer_dialog(app, ui);
     add_stamp_dialog(app, ui);
+    new_function_dialog(app, ui);
     add_imagery_dialog(app, ui);
     fill_dialog(app, ui);
     for (const std::string& text : app.take_errors()) ui.toast(text, ui.theme.error, 8);

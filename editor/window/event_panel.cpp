@@ -112,10 +112,7 @@ void event_tool_properties(App& app, ui::Ui& ui) {
 void selected_event_properties(App& app, ui::Ui& ui) {
     const Operator* op = app.selected_operator();
     const auto* found = op ? std::get_if<Event>(&op->shape) : nullptr;
-    if (!found) {
-        app.object_group = 0;
-        return;
-    }
+    if (!found) return;
     Event event = *found;
     ui::separator(ui);
     ui.push_id(fmt::format("event{}", op->id));
@@ -129,13 +126,7 @@ void selected_event_properties(App& app, ui::Ui& ui) {
     int seed = int(event.seed);
     if (ui::slider(ui, "Seed", seed, {.min = 0, .max = 9999})) event.seed = uint32_t(seed), changed = true;
     ui.pop_id();
-    if (changed) {  // one step of the history a drag
-        if (app.object_group == 0) app.object_group = app.session.document().next_group();
-        app.apply({.body = EditOperatorCommand{.id = op->id, .shape = event, .life = {}},
-                   .group = app.object_group});
-    } else if (!ui.button_down(ui::MouseButton::left)) {
-        app.object_group = 0;
-    }
+    app.edit_selected(changed ? std::optional<OperatorShape>(event) : std::nullopt, ui);
 }
 
 }  // namespace loam::window

@@ -78,6 +78,7 @@ void view_menu(App& app, ui::Ui& ui) {
     quality_items(app, ui);
     ui::menu_separator(ui);
     action_item(app, ui, "Timeline", "timeline", ui::Icon::none, true, app.show_timeline);
+    action_item(app, ui, "Decal functions", "functions", ui::Icon::none, true, app.show_functions);
 }
 
 void debug_menu(App& app, ui::Ui& ui) {

@@ -17,7 +17,8 @@ std::string detail_of(const OperatorShape& shape) {
     if (const auto* stamp = std::get_if<Stamp>(&shape)) return stamp->image;
     if (const auto* cutout = std::get_if<Cutout>(&shape)) return cutout->fill ? "closes" : "";
     const DecalMaterial* material = material_of(shape);
-    return material ? material->layer : std::string();
+    if (!material) return {};
+    return material->function.empty() ? material->layer : material->function;
 }
 
 // When it is there, and until when it moves.
@@ -182,6 +183,7 @@ void object_properties(App& app, ui::Ui& ui) {
     }
     ui.pop_disabled();
     selected_event_properties(app, ui);
+    selected_decal_properties(app, ui);
 }
 
 }  // namespace loam::window

@@ -103,6 +103,7 @@ void decal_properties(ui::Ui& ui, App& app) {
     share_slider(ui, "Rough edge", decal.rough);
     ui::checkbox(ui, "Round", decal.ellipse);
     tint_properties(ui, app.tools.settings);
+    function_properties(app, ui, app.tools.settings.function, app.tools.settings.parameters);
 }
 
 void road_properties(ui::Ui& ui, App& app) {
@@ -118,6 +119,7 @@ void road_properties(ui::Ui& ui, App& app) {
     ui::slider(ui, "Shoulder", road.shoulder_m, {.min = 0, .max = 50, .decimals = 1, .unit = "m"});
     ui.pop_disabled();
     tint_properties(ui, app.tools.settings);
+    function_properties(app, ui, app.tools.settings.function, app.tools.settings.parameters);
 }
 
 void stamp_properties(ui::Ui& ui, App& app) {

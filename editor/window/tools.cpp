@@ -161,8 +161,12 @@ std::optional<Command> ToolController::footprints(const ToolInput& input) {
 
 DecalMaterial ToolController::material() const {
     DecalMaterial m;
-    m.layer = settings.layer;
-    if (settings.use_tint || settings.layer.empty()) m.colour = glm::dvec3(settings.tint);
+    m.function = settings.function;
+    if (m.function.empty())
+        m.layer = settings.layer;
+    else
+        m.parameters = settings.parameters;
+    if (settings.use_tint || (settings.layer.empty() && m.function.empty())) m.colour = glm::dvec3(settings.tint);
     m.opacity = brush().strength;
     m.edge = 1 - brush().hardness;
     m.seed = settings.seed;

@@ -86,6 +86,9 @@ struct ToolSettings {
     uint32_t seed = 1;
     GaitDesc gait;
     DecalDesc decal;
+    // Of decals and roads; empty: the layer.
+    std::string function;
+    std::map<std::string, double> parameters;
     RoadDesc road; // the brush's radius is half the width
     StampDesc stamp;
     CutoutDesc cutout;

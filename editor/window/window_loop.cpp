@@ -6,6 +6,7 @@
 
 #include "editor/choices.h"
 #include "editor/window/panels.h"
+#include "runtime/document/function_library.h"
 #include "runtime/gpu/shader_library.h"
 
 namespace loam::window {
@@ -63,6 +64,7 @@ void WindowLoop::wait_for_work() {
     const bool moving = build_again_ || app_.busy() || pacer_.due();
     double until_s = moving ? next_frame_s_ : std::min(wake_s_, pacer_.wake_s());
     if (options_.shader_dir) until_s = std::min(until_s, next_poll_s_);
+    if (polls_functions()) until_s = std::min(until_s, next_function_poll_s_);
     platform_.wait(0);
     for (double now = platform_.now_s(); now < until_s; now = platform_.now_s()) {
         // Events do not end the limiter's wait: a fast mouse must not raise the frame rate.
@@ -73,11 +75,17 @@ void WindowLoop::wait_for_work() {
     waited_s_ = platform_.now_s() - began_s;
 }
 
+// Other programs may write the texts of functions, once there are some.
+bool WindowLoop::polls_functions() const {
+    return app_.show_functions || session_.document().functions().in_use();
+}
+
 const ui::FrameOutput& WindowLoop::build(double now_s, double dt_s, std::span<const ui::Event> events) {
     ui_.begin_frame({.events = events, .time_s = now_s, .size_px = {float(size_px_.x), float(size_px_.y)}});
     build_menus(app_, ui_);
     build_status_line(app_, ui_);
     build_timeline(app_, ui_);
+    build_function_panel(app_, ui_);
     build_shader_errors(app_, ui_);
     build_tool_bar(app_, ui_);
     build_properties(app_, ui_);
@@ -94,6 +102,11 @@ const ui::FrameOutput& WindowLoop::build(double now_s, double dt_s, std::span<co
 Status WindowLoop::iterate() {
     const double now = platform_.now_s();
     LOAM_TRY(poll_shaders(now));
+    if (polls_functions() && now >= next_function_poll_s_) {
+        next_function_poll_s_ = now + kShaderPoll_s;
+        app_.poll_functions();
+        if (app_.scene_is_changed()) build_again_ = true;
+    }
     const bool exposed = platform_.take_exposed();
     const std::vector<ui::Event> events = platform_.take_events();
     const bool due = build_again_ || exposed || !events.empty() || app_.busy() || pacer_.due() || now >= wake_s_ ||

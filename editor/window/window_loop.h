@@ -43,6 +43,7 @@ class WindowLoop {
     Status show_layer_pictures();  // of layers, that changed since the last call
     Status export_picture();
     Status poll_shaders(double now_s);
+    [[nodiscard]] bool polls_functions() const;
     void note_frame_time(double now_s);
 
     Platform& platform_;
@@ -58,7 +59,8 @@ class WindowLoop {
     FramePacer pacer_;
     RenderScale scale_;
     ui::Rect viewport_;
-    double last_iteration_s_ = 0, waited_s_ = 0, next_frame_s_ = 0, wake_s_ = 0, next_poll_s_ = 0;
+    double last_iteration_s_ = 0, waited_s_ = 0, next_frame_s_ = 0, wake_s_ = 0, next_poll_s_ = 0,
+           next_function_poll_s_ = 0;
     std::vector<std::vector<uint8_t>> pictured_layers_;
     bool build_again_ = true, ready_ = false, drew_moving_ = false;
     int announced_frames_ = 0;

@@ -159,13 +159,18 @@ struct TransitionCommand {
 struct TimeCommand {
     double time_s = 0;
 };
+// The text of a decals' function (decal_function.h), saved and shown once it compiles. Not undone: the one
+// before is given again.
+struct FunctionCommand {
+    std::string name, text;
+};
 struct UndoCommand {};
 struct RedoCommand {};
 
 using CommandBody =
     std::variant<SculptCommand, PaintCommand, FillCommand, CraterCommand, FootprintsCommand,
                  AddOperatorCommand, EditOperatorCommand, ReorderCommand, SetOperatorCommand,
-                 RemoveOperatorCommand, TransitionCommand, TimeCommand, UndoCommand, RedoCommand>;
+                 RemoveOperatorCommand, TransitionCommand, TimeCommand, FunctionCommand, UndoCommand, RedoCommand>;
 
 struct Command {
     CommandBody body;

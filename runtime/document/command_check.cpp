@@ -5,6 +5,7 @@
 
 #include "runtime/base/units.h"
 #include "runtime/document/command.h"
+#include "runtime/document/decal_function.h"
 #include "runtime/document/stamp_library.h"
 
 namespace loam {
@@ -119,8 +120,13 @@ Status check(const DecalMaterial& m) {
                                       {"channel metalness", c.metalness},
                                       {"channel occlusion", c.occlusion}})
         LOAM_TRY(in_range(name, value, 0, 1));
-    if (m.tile_m == 0) return {};
-    return in_range("tile_m", m.tile_m, 0.05, 5000);
+    if (m.tile_m != 0) LOAM_TRY(in_range("tile_m", m.tile_m, 0.05, 5000));
+    if (!m.function.empty()) LOAM_TRY(check_function_name(m.function));
+    if (m.function.empty() && !m.parameters.empty()) return error("\"parameters\" need a \"function\"");
+    if (m.parameters.size() > kMostFunctionParameters)
+        return error("{} parameters of a function, the limit is {}", m.parameters.size(), kMostFunctionParameters);
+    for (const auto& [name, value] : m.parameters) LOAM_TRY(in_range(name, value, -1.0e6, 1.0e6));
+    return {};
 }
 
 // Either sign; 0 is the singular case.
@@ -268,6 +274,10 @@ Status check(const FootprintsCommand& c) {
 Status check(const AddOperatorCommand& c) {
     LOAM_TRY(check_life(c.life));
     return check_shape(c.shape);
+}
+
+Status check(const FunctionCommand& c) {
+    return check_function_name(c.name);
 }
 
 Status check(const TimeCommand& c) {

@@ -51,6 +51,13 @@ DecalMaterial read_material(Fields& fields) {
         for (const auto& [name, member] : kChannels) m.channels.*member = of.number(name, 1);
         of.finish();
     }
+    if (const Json* function = fields.find("function")) m.function = fields.text_of(*function, "function");
+    if (const Json* parameters = fields.find("parameters")) {
+        if (!parameters->is_object())
+            refuse("{}: \"parameters\" must be an object of numbers by name", fields.place());
+        for (const auto& [name, value] : parameters->items())
+            m.parameters[name] = fields.number_of(value, "parameters." + name);
+    }
     return m;
 }
 
@@ -65,6 +72,8 @@ void write_material(Json& json, const DecalMaterial& m) {
     json["rough"] = m.rough;
     json["seed"] = m.seed;
     for (const auto& [name, member] : kChannels) json["channels"][name] = m.channels.*member;
+    if (!m.function.empty()) json["function"] = m.function;
+    for (const auto& [name, value] : m.parameters) json["parameters"][name] = value;
 }
 
 DecalOutline read_outline(Fields& fields) {

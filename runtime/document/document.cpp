@@ -122,6 +122,7 @@ Result<std::unique_ptr<Document>> Document::open(const std::filesystem::path& fo
     impl->settings = std::move(*settings);
     impl->mode = mode;
     impl->stamps = std::make_unique<StampLibrary>(folder);
+    impl->functions = std::make_unique<FunctionLibrary>(folder);
     if (!impl->settings.imagery.file.empty()) {
         auto imagery = Imagery::open(folder / impl->settings.imagery.file, impl->settings);
         // It may come back; nothing that is saved depends on it.
@@ -157,19 +158,19 @@ Status Document::Impl::load() {
             Dirt nothing;
             operators.set_time(time_s, nothing);
         }
-        size_t without_picture = 0;
+        size_t without_parts = 0;
         std::string missing;  // of the first
         LOAM_TRY(reader.for_each_operator([&](uint64_t id, const std::string& json) -> Status {
             auto op = parse_operator(id, json);
             if (!op.ok()) return error("terrain.db: {}", op.message());
             // What is missing may come back; nothing that is saved depends on it.
-            if (const Status given = give_parts(*op); !given && without_picture++ == 0)
+            if (const Status given = give_parts(*op); !given && without_parts++ == 0)
                 missing = given.message();
             operators.set(*op);
             return {};
         }));
-        if (without_picture > 0)
-            log(LogLevel::warning, "stamps that show nothing: {}; {}", without_picture, missing);
+        if (without_parts > 0)
+            log(LogLevel::warning, "stamps and decals that show nothing: {}; {}", without_parts, missing);
         auto journal = reader.journal_heads();
         if (!journal.ok()) return journal.error();
         heads = std::move(*journal);
@@ -344,6 +345,9 @@ void Document::read_imagery(int level, int x0, int y0, int width, int height, ui
 
 std::vector<std::string> Document::stamps() const {
     return impl_->stamps->names();
+}
+FunctionLibrary& Document::functions() const {
+    return *impl_->functions;
 }
 int Document::layer_index(std::string_view name) const {
     const auto& layers = impl_->settings.layers;

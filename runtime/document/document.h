@@ -50,6 +50,8 @@ struct Dirt {
 
 enum class OpenMode { read_write, read_only };
 
+class FunctionLibrary;
+
 class Document {
   public:
     static Result<std::unique_ptr<Document>> create(const std::filesystem::path& folder,
@@ -84,6 +86,8 @@ class Document {
     // Settings that may change later (sun, haze, layer list): writes project.toml.
     Status change_settings(const ProjectSettings& settings);
     [[nodiscard]] Status check_writable() const;
+    // Shows texts of decals' functions that another program has saved meanwhile; call it now and then.
+    Dirt poll_functions();
 
     // --- reads ---
     using ReadLock = std::shared_lock<std::shared_mutex>;
@@ -112,6 +116,8 @@ class Document {
     [[nodiscard]] std::optional<Operator> find_operator(uint64_t id) const;
     [[nodiscard]] ResolvedRoles roles() const;
     [[nodiscard]] std::vector<std::string> stamps() const;       // in the project's folder, sorted
+    // Functions of decals; FunctionCommand and poll_functions change them.
+    [[nodiscard]] FunctionLibrary& functions() const;
     [[nodiscard]] int layer_index(std::string_view name) const;  // -1: no such layer
 
     struct EventCost {

@@ -134,6 +134,10 @@ Status Document::Impl::give_parts(Operator& op) {
         if (!number.ok()) return number.error();
         *laid.number = *number;
     }
+    if (const DecalMaterial* material = material_of(op.shape); material && !material->function.empty()) {
+        const auto function = functions->find(material->function);
+        return function.ok() ? Status() : function.error();
+    }
     auto* stamp = std::get_if<Stamp>(&op.shape);
     if (!stamp) return {};
     auto picture = stamps->find(stamp->image);
@@ -196,6 +200,17 @@ Status Document::Impl::known_parts(const OperatorShape& shape) const {
     return {};
 }
 
+Status Document::Impl::known_function(const OperatorShape& shape, const OperatorShape* before) {
+    const DecalMaterial* material = material_of(shape);
+    const DecalMaterial* old = before ? material_of(*before) : nullptr;
+    if (!material || material->function.empty()) return {};
+    if (old && old->function == material->function && old->parameters == material->parameters) return {};
+    const auto function = functions->find(material->function);
+    if (!function.ok()) return function.error();
+    LOAM_TRY(check_parameters(**function, material->parameters));
+    return functions->keep(material->function);
+}
+
 void Document::Impl::add_operator(OperatorShape shape, const Life& life, Change& change) {
     const uint64_t id = change.next_operator++;
     change_operator(id, Operator{.id = id, .order = id, .shape = std::move(shape), .life = life}, change);
@@ -231,6 +246,7 @@ Status Document::Impl::complete(OperatorShape& shape) {
 
 Status Document::Impl::compute(const AddOperatorCommand& command, Change& change) {
     LOAM_TRY(known_parts(command.shape));
+    LOAM_TRY(known_function(command.shape, nullptr));
     OperatorShape shape = command.shape;
     LOAM_TRY(complete(shape));
     add_operator(std::move(shape), command.life, change);
@@ -241,6 +257,7 @@ Status Document::Impl::compute(const EditOperatorCommand& command, Change& chang
     const Operator* op = operators.find(command.id);
     if (!op) return error("there is no operator {}", command.id);
     LOAM_TRY(known_parts(command.shape));
+    LOAM_TRY(known_function(command.shape, &op->shape));
     Operator edited = *op;
     edited.shape = command.shape;
     LOAM_TRY(complete(edited.shape));
@@ -348,6 +365,27 @@ Result<Dirt> Document::Impl::set_time(double time_s) {
     }
     merge_dirt(dirt, kMaxOperatorRects);
     return dirt;
+}
+
+Dirt Document::Impl::function_dirt(const std::vector<std::string>& names) {
+    Dirt all;
+    if (names.empty()) return all;
+    const Exclusive exclusive(*this);
+    ++revision;
+    for (const Operator& op : operators.sorted()) {
+        const DecalMaterial* material = material_of(op.shape);
+        if (material && std::find(names.begin(), names.end(), material->function) != names.end())
+            operators.add_shown(op.id, all);
+    }
+    merge_dirt(all, kMaxOperatorRects);
+    Dirt dirt;  // what else they do does not change
+    dirt.texture = std::move(all.texture);
+    dirt.texture_size_m = all.texture_size_m;
+    return dirt;
+}
+
+Dirt Document::poll_functions() {
+    return impl_->function_dirt(impl_->functions->poll());
 }
 
 Result<Dirt> Document::Impl::commit_change(Change& change, const Command& command) {
@@ -464,6 +502,10 @@ Result<Dirt> Document::apply(const Command& command) {
     LOAM_TRY(check_command(command));
     if (const auto* time = std::get_if<TimeCommand>(&command.body)) return impl_->set_time(time->time_s);
     LOAM_TRY(impl_->may_write());
+    if (const auto* function = std::get_if<FunctionCommand>(&command.body)) {
+        LOAM_TRY(impl_->functions->set(function->name, function->text));
+        return impl_->function_dirt({function->name});
+    }
     Impl::Change change;
     change.next_operator = impl_->next_operator;
     LOAM_TRY(std::visit([&](const auto& body) { return impl_->compute(body, change); }, command.body));

@@ -15,6 +15,7 @@
 
 #include "runtime/document/base_map.h"
 #include "runtime/document/document.h"
+#include "runtime/document/function_library.h"
 #include "runtime/document/imagery.h"
 #include "runtime/document/journal_images.h"
 #include "runtime/document/operator_set.h"
@@ -50,6 +51,7 @@ struct Document::Impl {
     std::unique_ptr<BasePages> pages;
     OperatorSet operators;
     std::unique_ptr<StampLibrary> stamps;
+    std::unique_ptr<FunctionLibrary> functions;
     std::shared_ptr<const Imagery> imagery;     // null: none, or its file could not be opened
     std::vector<PageStore::JournalHead> heads;  // ascending; the applied ones come first
     uint64_t next_operator = 1, next_sequence = 1, next_group = 1;
@@ -98,6 +100,7 @@ struct Document::Impl {
     Status compute(const RemoveOperatorCommand& command, Change& change);
     Status compute(const TransitionCommand& command, Change& change);
     Status compute(const TimeCommand&, Change&) { return error("the time is not a command of the journal"); }
+    Status compute(const FunctionCommand&, Change&) { return error("a function is not a command of the journal"); }
     Status compute(const UndoCommand&, Change&) { return error("undo is not a command of the journal"); }
     Status compute(const RedoCommand&, Change&) { return error("redo is not a command of the journal"); }
     void change_operator(uint64_t id, std::optional<Operator> op, Change& change);
@@ -108,11 +111,15 @@ struct Document::Impl {
     // A stamp's picture and the number of a layer that is laid; an error leaves it without.
     Status give_parts(Operator& op);
     Status complete(OperatorShape& shape);  // what a command may leave to the document
+    // The function of a decal; one of an operator that had just the same stays, whatever became of its text.
+    Status known_function(const OperatorShape& shape, const OperatorShape* before);
     // Where a landslide without an end runs to.
     [[nodiscard]] Result<glm::dvec2> run_out(const Event& landslide);
     // The index follows the ground where a flood lies on it.
     void follow_heights(Dirt& dirt) const;
     Result<Dirt> set_time(double time_s);
+    // Where decals show the functions.
+    Dirt function_dirt(const std::vector<std::string>& names);
     Status write_change(Change& change, const JournalRow& row, const PageBalance& before);
     // Under the exclusive lock: the operators' new states, and where they show or did.
     void show_operators(Change& change);

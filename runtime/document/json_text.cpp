@@ -232,6 +232,11 @@ void write(Json& json, const TimeCommand& c) {
     json["cmd"] = "time";
     json["time_s"] = c.time_s;
 }
+void write(Json& json, const FunctionCommand& c) {
+    json["cmd"] = "function";
+    json["name"] = c.name;
+    json["text"] = c.text;
+}
 void write(Json& json, const UndoCommand&) {
     json["cmd"] = "undo";
 }
@@ -345,6 +350,10 @@ CommandBody read_body(const std::string& name, Fields& fields) {
         return edit;
     }
     if (name == "time") return TimeCommand{fields.number("time_s")};
+    if (name == "function") {
+        std::string function = fields.text("name");
+        return FunctionCommand{std::move(function), fields.text("text")};
+    }
     if (name == "reorder") {
         const uint64_t id = fields.whole("id", kMaxId);
         return ReorderCommand{id, fields.whole("order", kMaxId)};
@@ -361,7 +370,7 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "redo") return RedoCommand{};
     refuse(
         "unknown command \"{}\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-        "stamp, cutout, slide, flood, event, edit, reorder, operator, remove, transition, time, undo, redo)",
+        "stamp, cutout, slide, flood, event, edit, reorder, operator, remove, transition, time, function, undo, redo)",
         name);
 }
 

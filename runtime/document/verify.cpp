@@ -7,6 +7,7 @@
 #include "runtime/base/units.h"
 #include "runtime/document/dirt.h"
 #include "runtime/document/document_impl.h"
+#include "runtime/document/function_library.h"
 #include "runtime/document/laid_layer.h"
 #include "runtime/document/operator_json.h"
 
@@ -21,6 +22,7 @@ class Verifier {
     Verifier(const std::filesystem::path& folder, const ProjectSettings& settings, PageStore& store)
         : folder_(folder),
           stamps_(folder),
+          functions_(folder),
           settings_(settings),
           store_(store),
           height_(height_shape(settings)),
@@ -35,6 +37,7 @@ class Verifier {
         LOAM_TRY(check_map<IndexTexel>(index_, default_texel(settings_)));
         LOAM_TRY(check_counts());
         check_imagery();
+        check_functions();
         LOAM_TRY(check_operators());
         LOAM_TRY(check_journal());
         return std::move(faults_);
@@ -193,6 +196,24 @@ class Verifier {
                         fail("imagery: {}", read.message());
     }
 
+    // Those of the project's own folder, whether a decal shows them or not.
+    void check_functions() {
+        for (const std::string& name : functions_.names()) {
+            std::error_code none;
+            if (!std::filesystem::exists(functions_.file_of(name), none)) continue;
+            if (const auto function = functions_.find(name); !function.ok()) fail("{}", function.message());
+        }
+    }
+
+    // One whose text is at fault is among those above.
+    void check_function(uint64_t id, const DecalMaterial& material) {
+        if (const auto text = functions_.text(material.function); !text.ok())
+            return fail("operator {}: {}", id, text.message());
+        if (const auto function = functions_.find(material.function); function.ok())
+            if (const Status known = check_parameters(**function, material.parameters); !known.ok())
+                fail("operator {}: {}", id, known.message());
+    }
+
     Status check_operators() {
         const auto next = store_.read_meta("next_operator");
         if (!next.ok()) return next.error();
@@ -206,6 +227,7 @@ class Verifier {
             if (material && !material->layer.empty() && !has_layer(material->layer))
                 fail("operator {} is made of the layer \"{}\", which the project does not have", id,
                      material->layer);
+            if (material && !material->function.empty()) check_function(id, *material);
             if (op.ok()) {
                 OperatorShape shape = op->shape;
                 if (const LaidLayer laid = laid_layer(shape); laid.chosen() && !has_layer(*laid.name))
@@ -276,6 +298,7 @@ class Verifier {
 
     std::filesystem::path folder_;
     StampLibrary stamps_;
+    FunctionLibrary functions_;
     const ProjectSettings& settings_;
     PageStore& store_;
     const MapShape height_, index_;

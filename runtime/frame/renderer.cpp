@@ -109,6 +109,7 @@ struct Renderer::Impl {
     std::vector<gpu::PassTime> pass_times;      // of the newest finished frame
     gpu::UploadSlice decals, paints, segments;  // of direct shading, this frame's
     bool has_decals = false, has_paints = false;
+    FunctionList functions;  // that direct shading has shown
     gpu::UploadSlice facts, squares;  // of debug views, this frame's
     shared::FrameUniforms last_uniforms{};  // for resolve_again
 
@@ -295,7 +296,8 @@ void Renderer::Impl::upload_direct_decals(gpu::FrameRing& ring, double pixels_pe
                                              {.camera_m = last_camera.position_m,
                                               .pixels_per_radian = pixels_per_radian,
                                               .footprint_bias = footprint_bias,
-                                              .ground = ground});
+                                              .ground = ground},
+                                             functions);
     has_decals = !found.decals.empty();
     has_paints = !found.paints.empty();
     const auto upload = [&ring]<typename T>(const std::vector<T>& list) {
@@ -321,6 +323,7 @@ ResolveInputs Renderer::Impl::resolve_inputs(const gpu::UploadSlice& uniform_sli
             .segments = segments,
             .has_decals = has_decals,
             .has_paints = has_paints,
+            .functions = &functions,
             .facts = facts,
             .squares = squares};
 }

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 
+#include "runtime/document/decal_function.h"
 #include "runtime/frame/debug_views.h"
+#include "runtime/gpu/shader_library.h"
 #include "shaders/frame/debug_io.h"
 #include "shaders/frame/parallax_math.h"
 #include "shaders/frame/tiles_io.h"
@@ -13,6 +15,8 @@ using gpu::Access;
 
 namespace {
 
+constexpr const char* kDirect = "frame/resolve_direct.frag";
+constexpr const char* kDirectWithFunctions = "frame/resolve_direct.frag:functions";
 constexpr uint32_t kMaterialSlot = 5;  // VT_FIRST_SLOT and DIRECT_FIRST_SLOT of the resolve shaders
 constexpr uint32_t kTileSlot = 20;     // tile.vert
 
@@ -166,7 +170,7 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
     gpu::GraphicsDesc d{
         .name = direct ? "resolve direct" : "resolve",
         .vertex_shader = v.tiles ? "frame/tile.vert" : "frame/fullscreen.vert",
-        .fragment_shader = direct    ? "frame/resolve_direct.frag"
+        .fragment_shader = direct    ? (v.functions ? kDirectWithFunctions : kDirect)
                            : floor   ? "frame/resolve_floor.frag"
                            : v.map   ? "frame/resolve_map.frag"
                            : v.debug ? "frame/resolve_debug.frag"
@@ -223,6 +227,17 @@ Result<gpu::Pipeline*> ResolvePass::pipeline(const Variant& v, const LayerSet& l
     return &pipeline;
 }
 
+Status ResolvePass::take_functions(const FunctionList& functions) {
+    if (functions == functions_) return {};
+    std::vector<const DecalFunction*> list;
+    for (const auto& function : functions) list.push_back(function.get());
+    const Status made = device_->shaders().make(kDirectWithFunctions, kDirect, shader_texts(list));
+    if (!made.ok()) return error("{}", plain_message(made.message()));
+    functions_ = functions;
+    std::erase_if(pipelines_, [](const auto& made_before) { return made_before.first.functions; });
+    return {};
+}
+
 void ResolvePass::take_settings() {
     std::erase_if(pipelines_, [](const auto& made) {
         return made.first.ground == Variant::Ground::direct ||
@@ -252,6 +267,10 @@ Status ResolvePass::cmd_record(gpu::Commands& commands, const ResolveInputs& in,
                                const FrameSettings& settings, ResolvePart part) {
     Variant v = variant(settings, part, in.has_decals, in.has_paints);
     if (part != ResolvePart::floor) v.parallax_steps = parallax_steps(in.layers, settings);
+    if (v.paints && in.functions && !in.functions->empty()) {
+        LOAM_TRY(take_functions(*in.functions));
+        v.functions = true;
+    }
     const bool floor = part == ResolvePart::floor, direct = settings.shading != Shading::virtual_texture;
     use_material(commands, in, direct);
     if (v.hardware && !anisotropic_.handle()) {

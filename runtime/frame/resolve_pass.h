@@ -14,6 +14,7 @@
 #include "runtime/gpu/frame_ring.h"
 #include "runtime/maps/index_map.h"
 #include "runtime/scene/shadow_cascades.h"
+#include "runtime/texture/paint_decals.h"
 #include "runtime/texture/virtual_texture.h"
 #include "shaders/frame/resolve_io.h"
 
@@ -30,6 +31,7 @@ struct ResolveInputs {
     gpu::UploadSlice uniforms;                  // FrameUniforms
     gpu::UploadSlice decals, paints, segments;  // DirectDecal, PaintDecal, PaintSegment, for direct shading
     bool has_decals = false, has_paints = false;
+    const FunctionList* functions = nullptr;    // that the paints show, for direct shading
     gpu::UploadSlice facts, squares;            // VtPlaceFacts and VtImageSquare, for debug views
 };
 
@@ -56,7 +58,7 @@ class ResolvePass {
     // Everything that makes it another pipeline.
     struct Variant {
         enum class Ground { cached, direct, direct_texels, floor } ground = Ground::cached;
-        bool fine_shadows = false, decals = false, paints = false, tiles = false;
+        bool fine_shadows = false, decals = false, paints = false, functions = false, tiles = false;
         bool debug = false, map = false;  // map: a debug view of the textures themselves, over the whole picture
         bool two_mips = false, hardware = false;
         int parallax_steps = 0;
@@ -68,6 +70,8 @@ class ResolvePass {
 
     explicit ResolvePass(gpu::Device& device) : device_(&device) {}
     Status make_fixed();
+    // The shader of direct shading with these functions; pipelines with others are dropped.
+    Status take_functions(const FunctionList& functions);
     [[nodiscard]] Variant variant(const FrameSettings& settings, ResolvePart part, bool has_decals,
                                   bool has_paints) const;
     // Those made for pages of another layout are dropped.
@@ -81,6 +85,7 @@ class ResolvePass {
     gpu::Sampler anisotropic_;  // of the pages; made when first used
     gpu::Pipeline sky_;
     std::map<Variant, gpu::Pipeline> pipelines_;
+    FunctionList functions_;    // of direct shading's pipelines
     uint32_t layout_ = 0, placement_ = 0;  // PageTextures' that the pipelines are made for
     FilterTiles tiles_;
 };

@@ -79,22 +79,44 @@ void ShaderLibrary::watch(const fs::path& shader_root) {
     }
 }
 
+bool ShaderLibrary::poll_one(const std::string& name, const std::string& base) {
+    Watched& entry = watched_[name];  // a new file has no files yet and counts as changed
+    if (!entry.files.empty() && times_of(entry.files) == entry.times) return false;
+    entry.files.clear();
+    collect_files(root_, root_ / base, entry.files);
+    entry.times = times_of(entry.files);
+    return recompile(name);
+}
+
 std::vector<std::string> ShaderLibrary::poll() {
     std::vector<std::string> changed;
     if (root_.empty()) return changed;
-    for (const std::string& name : shader_names(root_)) {
-        Watched& entry = watched_[name];  // a new file has no files yet and counts as changed
-        if (!entry.files.empty() && times_of(entry.files) == entry.times) continue;
-        entry.files.clear();
-        collect_files(root_, root_ / name, entry.files);
-        entry.times = times_of(entry.files);
-        if (recompile(name)) changed.push_back(name);
-    }
+    for (const std::string& name : shader_names(root_))
+        if (poll_one(name, name)) changed.push_back(name);
+    for (const auto& [name, made] : made_)
+        if (poll_one(name, made.base)) changed.push_back(name);
     return changed;
 }
 
+Status ShaderLibrary::make(const std::string& name, const std::string& base, glsl::Texts texts) {
+    Made made{base, std::move(texts)};
+    auto words = compile_made(made);
+    if (!words) return words.error();
+    reloaded_[name] = std::move(*words);
+    made_[name] = std::move(made);
+    if (root_.empty()) return {};
+    Watched& entry = watched_[name];
+    entry.files.clear();
+    collect_files(root_, root_ / base, entry.files);
+    entry.times = times_of(entry.files);
+    return {};
+}
+
 bool ShaderLibrary::recompile(const std::string& name) {
-    auto words = compile(name, read_text(root_ / name), root_.parent_path());
+    const auto made = made_.find(name);
+    auto words = made != made_.end() ? compile_made(made->second)
+                                     : glsl::compile(name, read_text(root_ / name),
+                                                     glsl::reader_of_files(root_.parent_path()));
     if (!words) {
         errors_[name] = words.message();
         return false;
@@ -103,6 +125,12 @@ bool ShaderLibrary::recompile(const std::string& name) {
     if (const auto before = spirv(name); before.ok() && std::ranges::equal(*before, *words)) return false;
     reloaded_[name] = std::move(*words);
     return true;
+}
+
+Result<glsl::Words> ShaderLibrary::compile_made(const Made& made) const {
+    return glsl::compile_with(
+        made.base, made.texts,
+        root_.empty() ? glsl::Reader(glsl::embedded_text) : glsl::reader_of_files(root_.parent_path()));
 }
 
 }  // namespace loam::gpu

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "runtime/base/result.h"
+#include "runtime/glsl/compiler.h"
 
 namespace loam::gpu {
 
@@ -22,9 +23,9 @@ class ShaderLibrary {
     // The SPIR-V of a shader ("geometry/terrain.vert"): reloaded code if there is any, else what was embedded.
     [[nodiscard]] Result<std::span<const uint32_t>> spirv(std::string_view name) const;
 
-    // Compiles GLSL source text; `name` gives the stage by its extension and appears in messages as "name:line: …".
-    [[nodiscard]] static Result<std::vector<uint32_t>> compile(std::string_view name, std::string_view source,
-                                                               const std::filesystem::path& include_root);
+    // Makes, or makes again, the shader `name` ("texture/paint.frag:moss"): watched as its base is. After an error the
+    // one before stays. The caller reloads pipelines.
+    Status make(const std::string& name, const std::string& base, glsl::Texts texts);
 
     // Watching: call `poll` now and then (the editor: twice a second). Returns names whose code changed, and keeps the
     // last error, one message a shader, until that shader compiles.
@@ -39,9 +40,16 @@ class ShaderLibrary {
         std::vector<std::filesystem::path> files;           // the file and what it includes
         std::vector<std::filesystem::file_time_type> times; // of each: two may be saved within one tick of the clock
     };
+    struct Made {
+        std::string base;
+        glsl::Texts texts;
+    };
     bool recompile(const std::string& name); // true: the code is another
+    bool poll_one(const std::string& name, const std::string& base);
+    [[nodiscard]] Result<glsl::Words> compile_made(const Made& made) const;
     std::filesystem::path root_;
     std::map<std::string, Watched, std::less<>> watched_;
+    std::map<std::string, Made, std::less<>> made_;
     std::map<std::string, std::vector<uint32_t>, std::less<>> reloaded_;
     std::map<std::string, std::string> errors_;
 };

@@ -7,7 +7,6 @@
 
 #include "runtime/document/document.h"
 #include "runtime/texture/layer_set.h"
-#include "runtime/texture/paint_decals.h"
 #include "shaders/document/crater_math.h"
 #include "shaders/document/footprint_math.h"
 
@@ -113,11 +112,14 @@ struct PageDecals {
                 end(at(world.max_x, square.min_x)), end(at(world.max_y, square.min_y))};
     }
 
-    void add_to_run(DecalPass pass, DecalKind kind, bool even, size_t index) const {
+    void add_to_run(DecalPass pass, DecalRun run, size_t index) const {
         auto& runs = list.runs[size_t(pass)];
-        if (runs.empty() || runs.back().kind != kind || runs.back().even != even ||
-            runs.back().tier != tier || runs.back().first + runs.back().count != index)
-            runs.push_back({kind, even, tier, uint32_t(index), 0});
+        run.tier = tier;
+        run.first = uint32_t(index);
+        if (runs.empty() || runs.back().kind != run.kind || runs.back().even != run.even ||
+            runs.back().function != run.function || runs.back().tier != tier ||
+            runs.back().first + runs.back().count != index)
+            runs.push_back(run);
         ++runs.back().count;
     }
 
@@ -139,19 +141,25 @@ struct PageDecals {
         if (quad.empty()) return;
         instance.quad_min = glm::ivec2(quad.x0, quad.y0) + shift;
         instance.quad_size = {quad.width(), quad.height()};
-        add_to_run(DecalPass::terrain, kind, true, list.marks.size());
+        add_to_run(DecalPass::terrain, {.kind = kind}, list.marks.size());
         list.marks.push_back(instance);
     }
 
-    shared::PaintInstance& paint(DecalPass pass, DecalKind kind, const DecalMaterial& material,
-                                 const TexelRect& quad) const {
-        add_to_run(pass, kind, even_channels(material), list.paints.size());
+    // Null: its function cannot be shown.
+    shared::PaintInstance* paint(DecalPass pass, DecalKind kind, const DecalMaterial& material,
+                                 const TexelRect& quad, const shared::PaintDecal& decal) const {
+        const auto function = place_of_function(document, material, list.functions);
+        if (!function) return nullptr;
+        add_to_run(pass, {.kind = kind, .even = even_channels(material), .function = *function},
+                   list.paints.size());
         shared::PaintInstance& instance = list.paints.emplace_back();
+        instance.decal = decal;
+        instance.decal.function = *function > 0 ? 1 : 0;  // the shader has one
         instance.quad_min = glm::ivec2(quad.x0, quad.y0) + shift;
         instance.quad_size = {quad.width(), quad.height()};
         instance.page_shift = shift;
         instance.texel_m = float(texel_m);
-        return instance;
+        return &instance;
     }
 
     void operator()(const Crater& c) const {
@@ -181,8 +189,8 @@ struct PageDecals {
     void operator()(const TerrainDecal& decal, const WorldRect& bounds) const {
         const TexelRect quad = covered(bounds);
         if (quad.empty() || !shown(size_m(decal))) return;
-        paint(DecalPass::terrain, DecalKind::terrain, decal.material, quad).decal =
-            paint_of(document, layers, tier, decal, origin(0));
+        paint(DecalPass::terrain, DecalKind::terrain, decal.material, quad,
+              paint_of(document, layers, tier, decal, origin(0)));
     }
     void operator()(const Stamp&) const {}
     void operator()(const Cutout&) const {}
@@ -194,17 +202,19 @@ struct PageDecals {
         for (const SplinePiece& piece : spline.path->pieces()) {
             const TexelRect quad = covered(piece.line.grown(spline.path->half_width_m()));
             if (quad.empty()) continue;
-            paint(DecalPass::splines, DecalKind::spline, spline.material, quad).decal =
-                paint_of(document, layers, tier, spline, piece, origin(0), list.segments);
+            paint(DecalPass::splines, DecalKind::spline, spline.material, quad,
+                  paint_of(document, layers, tier, spline, piece, origin(0), list.segments));
         }
     }
     void operator()(const VolumeDecal& volume, const WorldRect& bounds) const {
         const TexelRect quad = covered(bounds);
         if (quad.empty() || !shown(size_m(volume))) return;
-        shared::PaintInstance& instance = paint(DecalPass::volumes, DecalKind::volume, volume.material, quad);
-        instance.decal = paint_of(document, layers, tier, volume, origin(volume.center_m.z));
-        add_ground(document, {square.min_x, square.min_y}, texel_m, quad, volume.center_m.z, instance,
-                   list.heights_m);
+        shared::PaintInstance* instance =
+            paint(DecalPass::volumes, DecalKind::volume, volume.material, quad,
+                  paint_of(document, layers, tier, volume, origin(volume.center_m.z)));
+        if (instance)
+            add_ground(document, {square.min_x, square.min_y}, texel_m, quad, volume.center_m.z, *instance,
+                       list.heights_m);
     }
 };
 
@@ -214,6 +224,7 @@ struct PictureDecals {
     const LayerSet& layers;
     const DirectDecalView& view;
     DirectDecals& out;
+    FunctionList& functions;
     double texel_a_metre = 0;  // the finest footprint at a metre's distance
 
     [[nodiscard]] bool shown(double size_m, const WorldRect& bounds) const {
@@ -235,7 +246,11 @@ struct PictureDecals {
                               .kind = kind,
                               .paint = 0});
     }
-    void paint(uint32_t kind, const shared::PaintDecal& decal, const WorldRect& bounds) const {
+    void paint(uint32_t kind, const DecalMaterial& material, shared::PaintDecal decal,
+               const WorldRect& bounds) const {
+        const auto function = place_of_function(document, material, functions);
+        if (!function) return;
+        decal.function = *function;
         out.decals.push_back({.center_rel_m = relative(bounds.center()),
                               .reach_m = float(std::hypot(bounds.width(), bounds.height()) * 0.5),
                               .size_m = 0,
@@ -252,12 +267,14 @@ struct PictureDecals {
     void operator()(const Footprint& f) const { mark(source_of(f), kDecalFootprint); }
     void operator()(const TerrainDecal& decal, const WorldRect& bounds) const {
         if (shown(size_m(decal), bounds))
-            paint(kPaintTerrain, paint_of(document, layers, layers.direct_tier(), decal, view.camera_m),
+            paint(kPaintTerrain, decal.material,
+                  paint_of(document, layers, layers.direct_tier(), decal, view.camera_m),
                   bounds);
     }
     void operator()(const VolumeDecal& volume, const WorldRect& bounds) const {
         if (shown(size_m(volume), bounds))
-            paint(kPaintVolume, paint_of(document, layers, layers.direct_tier(), volume, view.camera_m),
+            paint(kPaintVolume, volume.material,
+                  paint_of(document, layers, layers.direct_tier(), volume, view.camera_m),
                   bounds);
     }
     void operator()(const Stamp&) const {}
@@ -271,7 +288,7 @@ struct PictureDecals {
             const bool in_view = std::any_of(view.ground.begin(), view.ground.end(),
                                              [&](const WorldRect& rect) { return rect.overlaps(bounds); });
             if (in_view && shown(size_m(spline), bounds))
-                paint(kPaintSpline,
+                paint(kPaintSpline, spline.material,
                       paint_of(document, layers, layers.direct_tier(), spline, piece, view.camera_m,
                                out.segments),
                       bounds);
@@ -345,7 +362,8 @@ std::vector<DecalTexture> decal_textures(const Document& document, const LayerSe
     return textures;
 }
 
-DirectDecals direct_decals(const Document& document, const LayerSet& layers, const DirectDecalView& view) {
+DirectDecals direct_decals(const Document& document, const LayerSet& layers, const DirectDecalView& view,
+                           FunctionList& functions) {
     const auto lock = document.read_lock();
     std::vector<const Operator*> found, here;
     for (const WorldRect& rect : view.ground) {
@@ -358,7 +376,7 @@ DirectDecals direct_decals(const Document& document, const LayerSet& layers, con
     });
     found.erase(std::unique(found.begin(), found.end()), found.end());
     DirectDecals out;
-    const PictureDecals decals{document, layers, view, out,
+    const PictureDecals decals{document, layers, view, out, functions,
                                kFootprintMargin / view.pixels_per_radian * std::exp2(view.footprint_bias)};
     for (const Operator* op : found) visit_decal(decals, *op);
     return out;

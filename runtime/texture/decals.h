@@ -12,21 +12,19 @@
 
 #include "runtime/base/rect.h"
 #include "runtime/texture/page_id.h"
+#include "runtime/texture/paint_decals.h"
 #include "shaders/texture/decal_io.h"
 #include "shaders/texture/paint_io.h"
 
 namespace loam {
-
-class Document;
-class LayerSet;
-enum class LayerTier : uint8_t;
 
 enum class DecalKind : uint8_t { crater, footprint, terrain, spline, volume };
 
 // Consecutive instances of one kind: one draw. Order between pages does not matter, order within one does.
 struct DecalRun {
     DecalKind kind;
-    bool even = true;  // one weight a target will do (paint.frag)
+    bool even = true;       // one weight a target will do (paint.frag)
+    uint32_t function = 0;  // from 1 in the list; 0: none
     LayerTier tier{};
     uint32_t first = 0, count = 0;
 };
@@ -40,6 +38,7 @@ struct DecalList {
     std::vector<shared::PaintInstance> paints;   // of the other kinds
     std::vector<shared::PaintSegment> segments;  // of splines
     std::vector<float> heights_m;                // under volumes
+    FunctionList functions;
     std::array<std::vector<DecalRun>, kDecalPasses> runs;
 };
 
@@ -70,9 +69,10 @@ struct DirectDecals {
     std::vector<shared::PaintSegment> segments;
 };
 
-// The decals over the ground in view that are not too small to be seen. Takes the document's ReadLock.
+// The decals over the ground in view that are not too small to be seen. Takes the document's ReadLock. `functions`:
+// that pictures have shown so far, in the order of the shader.
 [[nodiscard]] DirectDecals direct_decals(const Document& document, const LayerSet& layers,
-                                         const DirectDecalView& view);
+                                         const DirectDecalView& view, FunctionList& functions);
 
 // The texels of a page whose centres lie in a world rectangle, grown by one; not clipped.
 [[nodiscard]] TexelRect page_texels(const TextureLayout& layout, const PageId& page, const WorldRect& world);

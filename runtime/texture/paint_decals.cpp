@@ -7,6 +7,7 @@
 
 #include "runtime/base/srgb.h"
 #include "runtime/document/document.h"
+#include "runtime/document/function_library.h"
 #include "runtime/maps/height_compose.h"
 #include "runtime/texture/layer_set.h"
 #include "runtime/texture/page_id.h"
@@ -43,6 +44,12 @@ double set_material(const Document& document, const LayerSet& layers, LayerTier 
     out.gloss_share = float(m.channels.gloss);
     out.metal_share = float(m.channels.metalness);
     out.occlusion_share = float(m.channels.occlusion);
+    if (m.function.empty()) return tile_m;
+    if (const auto function = document.functions().shown(m.function)) {
+        const std::vector<double> values = parameter_values(*function, m.parameters);
+        for (size_t i = 0; i < values.size(); ++i)
+            (i < 4 ? out.parameters_a : out.parameters_b)[int(i % 4)] = float(values[i]);
+    }
     return tile_m;
 }
 
@@ -61,6 +68,20 @@ void set_box(VolumeAxes axes, glm::dvec3 half_m, glm::dvec3 center_rel_m, double
 }
 
 }  // namespace
+
+std::optional<uint32_t> place_of_function(const Document& document, const DecalMaterial& material,
+                                          FunctionList& functions) {
+    if (material.function.empty()) return 0;
+    auto shown = document.functions().shown(material.function);
+    if (!shown) return std::nullopt;
+    for (size_t i = 0; i < functions.size(); ++i) {
+        if (functions[i]->name != material.function) continue;
+        functions[i] = std::move(shown);
+        return uint32_t(i + 1);
+    }
+    functions.push_back(std::move(shown));
+    return uint32_t(functions.size());
+}
 
 int layer_of(const Document& document, const LayerSet& layers, const DecalMaterial& material) {
     return material.layer.empty() ? -1 : std::min(document.layer_index(material.layer), layers.count - 1);

@@ -2,6 +2,7 @@
 // of, where they lie in a frame, and the ground's heights under volumes.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -16,6 +17,7 @@ namespace loam {
 
 class Document;
 class LayerSet;
+struct DecalFunction;
 enum class LayerTier : uint8_t;
 
 // The layer whose textures a material shows; -1: a flat colour. And the size of a repeat of them.
@@ -23,7 +25,14 @@ enum class LayerTier : uint8_t;
 [[nodiscard]] double tile_of(const Document& document, const LayerSet& layers, const DecalMaterial& material,
                              int layer);
 
-// A decal that lies on the ground at `origin_m`'s frame: the segments of a spline's piece are appended to
+// The functions that a list of decals shows, each once.
+using FunctionList = std::vector<std::shared_ptr<const DecalFunction>>;
+// The place of a material's function in the list, counted from 1 and added if need be; 0: it has none. Nothing: the
+// decal cannot be shown.
+[[nodiscard]] std::optional<uint32_t> place_of_function(const Document& document, const DecalMaterial& material,
+                                                        FunctionList& functions);
+
+// But for its function's place. A decal that lies on the ground at `origin_m`'s frame: the segments of a spline's piece are appended to
 // `segments`.
 [[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, LayerTier tier,
                                           const TerrainDecal& decal, glm::dvec3 origin_m);

@@ -3,7 +3,7 @@
 // that a rectangle of a page gets the bits of the whole page.
 //
 // One target has one weight. Where a decal's channels have shares of their own it is drawn three times, each time into the
-// channels of one part (runtime/texture/paint_pass.h): 0 all, 1 albedo, gloss, metalness; 2 normals; 3 occlusion.
+// channels of one part (runtime/texture/decal_passes.cpp): 0 all, 1 albedo, gloss, metalness; 2 normals; 3 occlusion.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_scalar_block_layout : require
 #include "shaders/texture/paint_io.h"
@@ -28,6 +28,10 @@ layout(location = 2) out vec4 metal;
 #define MATERIAL_METAL layer_metal
 #define PAINT_SEGMENT(i) segments[i]
 #include "shaders/texture/paint_shade.glsl"
+
+#ifdef LOAM_DECAL_FUNCTIONS
+layout(binding = 6, scalar) buffer Failed { uint failed_texels; }; // of this draw: where a function gave no number
+#endif
 
 float height_at(PaintInstance instance, vec2 grid) {
     vec2 whole = floor(grid), rest = grid - whole;
@@ -58,6 +62,9 @@ void main() {
     if (kKind == kPaintSpline) place = paint_spline(instance.decal, at_m, instance.texel_m);
     if (kKind == kPaintVolume) place = paint_on_ground(instance, texel, at_m);
     PaintShade shade = paint_material(instance.decal, place);
+#ifdef LOAM_DECAL_FUNCTIONS
+    if (shade.failed && kPart <= 1u) atomicAdd(failed_texels, 1u);
+#endif
 
     // Of part 0 all shares are equal.
     PaintDecal decal = instance.decal;

@@ -34,6 +34,8 @@ struct PaintDecal {
     uint first_segment, segment_count;
     uint own_first, own_count;  // counted from first_segment
     float length_m, fade_m;
+    uint function;        // counted from 1 in the shader's functions (document/decal_function.h); 0: none
+    vec4 parameters_a, parameters_b;  // of the function, in its order
 };
 
 // A straight piece of a spline.

@@ -11,12 +11,15 @@
 #include "shaders/texture/layer_math.h"
 #include "shaders/texture/paint_io.h"
 #include "shaders/texture/texture_io.h"
+#include "shaders/texture/function_calls.glsl"
+#include "shaders/texture/decal_functions.glsl"
 
 struct PaintShade {
     vec3 root;       // square root of the linear albedo
     vec2 normal;     // encoded
     float gloss, metalness, occlusion;
     float cover;     // times a channel's share: its weight
+    bool failed;     // its function gave no number here, and nothing is shown
 };
 
 // Where a place is on a decal: what the material needs of it.
@@ -25,9 +28,10 @@ struct PaintPlace {
     vec2 right, up;  // the texture's directions in the frame of the ground
     float texel_m;   // of a texel, as long as it lies on the texture
     float cover;
+    fn_Place at;     // what a function is told of it
 };
 
-// Coverage by the distance inside the outline; q: a place on the decal in units of half_m, for the uneven edge.
+// Coverage, but for opacity, by the distance inside the outline; q: a place on the decal in units of half_m, for the uneven edge.
 float paint_edge(PaintDecal decal, float inside_m, float half_m, vec2 q, float texel_m) {
     // Noise finer than two texels of the page is left out, and with it the uneven edge moves to its middle.
     float fine = clamp(half_m * 0.125 / texel_m - 1.0, 0.0, 1.0), coarse = clamp(half_m * 0.5 / texel_m - 1.0, 0.0, 1.0);
@@ -35,7 +39,7 @@ float paint_edge(PaintDecal decal, float inside_m, float half_m, vec2 q, float t
                            0.35 * fine * noise_value(q * 8.0, noise_hash(decal.seed + 62u));
     precise float eaten_m = inside_m - decal.rough * half_m * (0.3 + 0.3 * uneven);
     float soft_m = max(decal.edge * half_m, texel_m);
-    return noise_ramp(0.0, soft_m, eaten_m) * decal_fade(2.0 * half_m, texel_m) * decal.opacity;
+    return noise_ramp(0.0, soft_m, eaten_m) * decal_fade(2.0 * half_m, texel_m);
 }
 
 // local_m: on the decal's own axes.
@@ -58,7 +62,9 @@ PaintPlace paint_terrain(PaintDecal decal, vec2 at_m, float texel_m) {
     place.right = decal.axis_x.xy;
     place.up = decal.axis_y.xy;
     place.texel_m = texel_m;
-    place.cover = paint_outline(decal, local_m, texel_m);
+    float edge = paint_outline(decal, local_m, texel_m);
+    place.cover = edge * decal.opacity;
+    place.at = fn_Place(local_m, decal.half_m.xy, edge, texel_m, decal.seed);
     return place;
 }
 
@@ -88,7 +94,9 @@ PaintPlace paint_spline(PaintDecal decal, vec2 at_m, float texel_m) {
     place.right = right;
     place.up = s.direction;
     place.texel_m = texel_m;
-    place.cover = paint_edge(decal, half_m - sqrt(nearest), half_m, vec2(across_m, from_start_m) / half_m, texel_m);
+    float edge = paint_edge(decal, half_m - sqrt(nearest), half_m, vec2(across_m, from_start_m) / half_m, texel_m);
+    place.cover = edge * decal.opacity;
+    place.at = fn_Place(vec2(across_m, from_start_m), vec2(half_m, decal.length_m), edge, texel_m, decal.seed);
     if (decal.fade_m > 0.0)
         place.cover *= noise_ramp(0.0, decal.fade_m, from_start_m) * noise_ramp(0.0, decal.fade_m, to_end_m);
     if (which < decal.own_first || which >= decal.own_first + decal.own_count) place.cover = 0.0;
@@ -114,7 +122,9 @@ PaintPlace paint_volume(PaintDecal decal, vec3 at_m, vec3 ground, float texel_m)
     place.up = vec2(dot(decal.axis_y, ground_east), dot(decal.axis_y, ground_north));
     float deep = 1.0 - noise_ramp(1.0 - decal.deep_edge, 1.0, abs(local_m.z) / decal.half_m.z);
     float facing = noise_ramp(0.05, 0.35, dot(ground, decal.axis_z));
-    place.cover = paint_outline(decal, local_m.xy, place.texel_m) * deep * facing;
+    float edge = paint_outline(decal, local_m.xy, place.texel_m);
+    place.cover = edge * decal.opacity * deep * facing;
+    place.at = fn_Place(local_m.xy, decal.half_m.xy, edge, place.texel_m, decal.seed);
     return place;
 }
 
@@ -128,13 +138,37 @@ PaintShade paint_material(PaintDecal decal, PaintPlace place) {
     if (kHasMetal) metal = textureLod(MATERIAL_METAL, uv, lod).r;
     bool flat_colour = decal.layer < 0;
     vec2 n = flat_colour ? vec2(0.0) : surface.xy * (255.0 / 127.0) - 128.0 / 127.0;
-    vec2 normal = place.right * n.x + place.up * n.y;
-    shade.root = sqrt(clamp((flat_colour ? vec3(1.0) : albedo) * decal.colour, 0.0, 1.0));
-    shade.normal = vec2(page_encode_normal(normal.x), page_encode_normal(normal.y));
+    vec3 colour = (flat_colour ? vec3(1.0) : albedo) * decal.colour;
     shade.gloss = flat_colour ? decal.gloss : surface.z;
     shade.metalness = flat_colour ? decal.metalness : metal;
     shade.occlusion = flat_colour ? 1.0 : surface.w;
     shade.cover = place.cover;
+    shade.failed = false;
+    if (kDecalFunctions && decal.function != 0u) {
+        fn_Surface s;
+        s.colour = colour;
+        s.gloss = shade.gloss;
+        s.metalness = shade.metalness;
+        s.occlusion = shade.occlusion;
+        s.slope = -n / sqrt(max(1.0 - dot(n, n), 0.01));
+        s.cover = 1.0;
+        run_function(decal, place.at, s);
+        if (fn_are_numbers(s)) {
+            vec2 slope = clamp(s.slope, -8.0, 8.0);
+            n = -slope / sqrt(1.0 + dot(slope, slope));
+            colour = s.colour;
+            shade.gloss = clamp(s.gloss, 0.0, 1.0);
+            shade.metalness = clamp(s.metalness, 0.0, 1.0);
+            shade.occlusion = clamp(s.occlusion, 0.0, 1.0);
+            shade.cover *= clamp(s.cover, 0.0, 1.0);
+        } else {
+            shade.failed = shade.cover > 0.0;
+            shade.cover = 0.0;
+        }
+    }
+    vec2 normal = place.right * n.x + place.up * n.y;
+    shade.root = sqrt(clamp(colour, 0.0, 1.0));
+    shade.normal = vec2(page_encode_normal(normal.x), page_encode_normal(normal.y));
     return shade;
 }
 #endif

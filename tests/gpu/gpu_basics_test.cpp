@@ -315,11 +315,11 @@ TEST_F(GpuBasics, AnUnknownDeviceNamesThoseThereAre) {
 
 TEST(ShaderCompile, ErrorsGiveNameAndLine) {
     const auto shader =
-        ShaderLibrary::compile("test/bad.comp", "#version 460\n\nvoid main() { x = 1; }\n", fs::path("."));
+        glsl::compile("test/bad.comp", "#version 460\n\nvoid main() { x = 1; }\n", glsl::embedded_text);
     ASSERT_FALSE(shader.ok());
     EXPECT_TRUE(shader.message().starts_with("test/bad.comp:3: ")) << shader.message();
     EXPECT_EQ(shader.message().find("compilation errors"), std::string::npos) << shader.message();
-    EXPECT_FALSE(ShaderLibrary::compile("test/bad.txt", "", fs::path(".")).ok());
+    EXPECT_FALSE(glsl::compile("test/bad.txt", "", glsl::embedded_text).ok());
 }
 
 // A folder as the repository has it: include root, and shaders/test below it.

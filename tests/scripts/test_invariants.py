@@ -42,6 +42,7 @@ def random_operator(rng, x, y, layers):
         {"cmd": "decal", "x": x, "y": y, "half_m": half, "heading_rad": rng.uniform(0, 6), "layer": rng.choice(layers)},
         {"cmd": "spline", "points": points, "width_m": max(0.3 * size, 0.1), "carve": rng.random(), "layer": rng.choice(layers)},
         {"cmd": "volume", "at": [x, y, rng.uniform(-5, 20)], "half_m": half + [size], "direction": [0.3, 0.2, -1]},
+        {"cmd": "decal", "x": x, "y": y, "half_m": half, "function": rng.choice(("moss", "frost", "gravel", "scorch"))},
         {"cmd": "cutout", "form": "brush", "dabs": [[x, y], near], "radius_m": size, "fill": rng.random() < 0.3},
         {"cmd": "cutout", "form": "box", "at": [x, y, rng.uniform(-5, 20)], "half_m": half + [4 * size]},
         {"cmd": "slide", "x": x, "y": y, "radius_m": size, "to": near, "to_radius_m": 1.5 * size, "volume_m3": 0.2 * size ** 3},

@@ -67,8 +67,8 @@ TEST(command, errors_are_one_sentence) {
         {R"({"cmd":5})", "a command: \"cmd\" must be a text, found number"},
         {R"({"cmd":"foo"})",
          "unknown command \"foo\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-         "stamp, cutout, slide, flood, event, edit, reorder, operator, remove, transition, time, undo, "
-         "redo)"},
+         "stamp, cutout, slide, flood, event, edit, reorder, operator, remove, transition, time, "
+         "function, undo, redo)"},
         {R"({"cmd":"transition"})", "transition: \"name\" is missing"},
         {R"({"cmd":"transition","name":""})", "a transition needs a name"},
         {R"({"cmd":"transition","name":"a","threshold":-1})", "threshold is -1, must be 0 … 1"},

@@ -23,6 +23,9 @@ inline DecalMaterial random_material(std::mt19937& random) {
     m.rough = share();
     m.seed = uint32_t(random());
     if (random() % 2) m.channels = {share(), share(), share(), share(), share()};
+    constexpr const char* kFunctions[] = {"cracks", "frost", "gravel", "oil"};
+    if (random() % 4 == 0) m.function = kFunctions[random() % 4];
+    if (m.function == "cracks") m.parameters = {{"curl", share()}, {"plate", 0.1 + share()}};
     return m;
 }
 

@@ -162,7 +162,10 @@ TEST(ShaderIo, PaintDecal) {
                    AT(PaintDecal, own_first),
                    AT(PaintDecal, own_count),
                    AT(PaintDecal, length_m),
-                   AT(PaintDecal, fade_m)});
+                   AT(PaintDecal, fade_m),
+                   AT(PaintDecal, function),
+                   AT(PaintDecal, parameters_a),
+                   AT(PaintDecal, parameters_b)});
 }
 
 TEST(ShaderIo, PaintSegment) {

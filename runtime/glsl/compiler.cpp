@@ -1,17 +1,21 @@
-// ShaderLibrary::compile: GLSL to SPIR-V with glslang. The same options as shaders/CMakeLists.txt gives the
-// build.
+// The same options as shaders/CMakeLists.txt gives the build.
+#include "runtime/glsl/compiler.h"
+
+#include <algorithm>
 #include <fstream>
+#include <functional>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include <glslang/Public/ResourceLimits.h>
 #include <glslang/Public/ShaderLang.h>
 #include <glslang/SPIRV/GlslangToSpv.h>
 
-#include "runtime/gpu/shader_library.h"
+#include "runtime/glsl/shader_sources.h"
 
-namespace loam::gpu {
+namespace loam::glsl {
 
 namespace {
 
@@ -19,7 +23,7 @@ namespace fs = std::filesystem;
 
 class Includer : public glslang::TShader::Includer {
   public:
-    Includer(fs::path root, std::string shader) : root_(std::move(root)), shader_(std::move(shader)) {}
+    Includer(Reader read, std::string shader) : read_(std::move(read)), shader_(std::move(shader)) {}
 
     IncludeResult* includeLocal(const char* header, const char* from, size_t depth) override {
         if (depth > 32) return nullptr;  // a cycle: glslang itself has no limit
@@ -28,9 +32,9 @@ class Includer : public glslang::TShader::Includer {
         const fs::path candidates[] = {(including.parent_path() / header).lexically_normal(),
                                        fs::path(header).lexically_normal()};
         for (const fs::path& name : candidates) {
-            std::ifstream file(root_ / name, std::ios::binary);
-            if (!file) continue;
-            auto* text = new std::string(std::istreambuf_iterator<char>(file), {});
+            auto found = read_(name.generic_string());
+            if (!found) continue;
+            auto* text = new std::string(std::move(*found));
             return new IncludeResult(name.generic_string(), text->data(), text->size(), text);
         }
         return nullptr;
@@ -42,9 +46,16 @@ class Includer : public glslang::TShader::Includer {
     }
 
   private:
-    fs::path root_;
+    Reader read_;
     std::string shader_;
 };
+
+Reader with_texts(const Texts& texts, Reader otherwise) {
+    return [&texts, otherwise = std::move(otherwise)](const std::string& name) {
+        const auto it = texts.find(name);
+        return it == texts.end() ? otherwise(name) : std::optional(it->second);
+    };
+}
 
 // "ERROR: a.comp:3: 'x' : undeclared identifier" loses its first word; the closing counts of errors go.
 std::string reduced(const char* log) {
@@ -63,8 +74,24 @@ std::string reduced(const char* log) {
 
 }  // namespace
 
-Result<std::vector<uint32_t>> ShaderLibrary::compile(std::string_view name, std::string_view source,
-                                                     const fs::path& include_root) {
+Reader reader_of_files(fs::path root) {
+    return [root = std::move(root)](const std::string& name) -> std::optional<std::string> {
+        std::ifstream file(root / name, std::ios::binary);
+        if (!file) return std::nullopt;
+        return std::string(std::istreambuf_iterator<char>(file), {});
+    };
+}
+
+std::optional<std::string> embedded_text(const std::string& name) {
+    constexpr std::string_view kFolder = "shaders/";
+    if (!name.starts_with(kFolder)) return std::nullopt;
+    const auto sources = shader_sources();
+    const auto it = std::ranges::find(sources, std::string_view(name).substr(kFolder.size()),
+                                      &ShaderSource::name);
+    return it == sources.end() ? std::nullopt : std::optional(std::string(it->text));
+}
+
+Result<Words> compile(std::string_view name, std::string_view source, Reader read, Lines lines) {
     [[maybe_unused]] static const bool started = glslang::InitializeProcess();
     EShLanguage stage;
     if (name.ends_with(".comp"))
@@ -86,17 +113,24 @@ Result<std::vector<uint32_t>> ShaderLibrary::compile(std::string_view name, std:
     shader.setEnvClient(glslang::EShClientVulkan, glslang::EShTargetVulkan_1_3);
     shader.setEnvTarget(glslang::EShTargetSpv, glslang::EShTargetSpv_1_6);
     constexpr auto kMessages = static_cast<EShMessages>(EShMsgSpvRules | EShMsgVulkanRules);
-    Includer includer(include_root, title);
+    Includer includer(std::move(read), title);
     if (!shader.parse(GetDefaultResources(), 460, false, kMessages, includer))
         return error("{}", reduced(shader.getInfoLog()));
     glslang::TProgram program;
     program.addShader(&shader);
     if (!program.link(kMessages)) return error("{}: {}", name, reduced(program.getInfoLog()));
-    std::vector<uint32_t> words;
+    Words words;
     glslang::SpvOptions options;
     options.disableOptimizer = true;
+    options.generateDebugInfo = lines == Lines::yes;
     glslang::GlslangToSpv(*program.getIntermediate(stage), words, &options);
     return words;
 }
 
-}  // namespace loam::gpu
+Result<Words> compile_with(const std::string& base, const Texts& texts, const Reader& files, Lines lines) {
+    const auto source = files("shaders/" + base);
+    if (!source) return error("there is no source of the shader {}", base);
+    return compile(base, *source, with_texts(texts, files), lines);
+}
+
+}  // namespace loam::glsl

@@ -1,0 +1,32 @@
+// Frost: crystals in feathers over the ground, thicker in patches
+//@ cold 0.55 0 1 How much of the ground is white
+//@ feather 0.25 0.03 2 Size of a feather, metres
+//@ sparkle 0.5 0 1 How glossy the crystals are
+
+float rime(Place at) {
+    float patches = fbm(at.p / (8.0 * feather), at.seed, 4);
+    // Folded noise draws branches.
+    vec2 q = at.p / feather;
+    float fold = 0.0;
+    float share = 0.5;
+    for (int i = 0; i < 4; ++i) {
+        fold += share * (1.0 - abs(noise(q, at.seed + 10u)));
+        q = vec2(0.8 * q.x - 0.6 * q.y, 0.6 * q.x + 0.8 * q.y) * 2.1;
+        share *= 0.55;
+    }
+    float shows = detail(0.5 * feather, at);
+    return mix(0.55, ramp(0.45, 0.85, fold), shows) + 0.6 * patches;
+}
+
+float relief(Place at) {
+    return 0.006 * feather * rime(at) * detail(0.25 * feather, at);
+}
+
+void decal(Place at, inout Surface s) {
+    float white = clamp(rime(at) - 0.9 + 1.3 * cold * at.edge, 0.0, 1.0);
+    s.colour *= srgb(0.90, 0.94, 0.98);
+    s.gloss = mix(0.35, 0.75, sparkle * random(at.p / max(0.004, at.texel_m), at.seed + 3u));
+    s.metalness = 0.0;
+    s.occlusion = 1.0;
+    s.cover = 0.9 * white;
+}
