@@ -155,7 +155,7 @@ void Session::spread(const Dirt& dirt) {
 
 Dirt Session::poll_functions() {
     Dirt dirt = document_->poll_functions();
-    spread(dirt);
+    if (!dirt.empty()) spread(dirt);
     return dirt;
 }
 

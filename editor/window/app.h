@@ -161,7 +161,7 @@ class App {
     [[nodiscard]] const std::vector<std::string>& function_names();
     void edit_function(const std::string& name);  // in the panel; what was written there before is kept
     void try_function();                          // saves and shows the text if it compiles
-    void poll_functions();                        // twice a second
+    bool poll_functions();  // twice a second; whether something is shown otherwise
 
     // --- the time (timeline.cpp) ---
     bool show_timeline = false;
@@ -205,7 +205,6 @@ class App {
     // True once after the scene changed in a way that a new picture shows.
     [[nodiscard]] bool take_scene_changed() { return std::exchange(scene_changed_, false); }
     void scene_changed() { scene_changed_ = true; }
-    [[nodiscard]] bool scene_is_changed() const { return scene_changed_; }
     [[nodiscard]] bool take_settings_changed() { return std::exchange(settings_changed_, false); }
     [[nodiscard]] bool take_quality_changed() { return std::exchange(quality_changed_, false); }
     std::function<void(const Command&)> on_command; // after it was committed

@@ -156,19 +156,22 @@ void App::try_function() {
     say(fmt::format("{} compiles", title_of_function(functions.name)));
 }
 
-void App::poll_functions() {
+bool App::poll_functions() {
     const Dirt dirt = session.poll_functions();
-    if (!dirt.texture.empty()) scene_changed_ = true;
+    const bool shown = !dirt.empty();
+    if (shown) {
+        function_names_revision_ = ~uint64_t{0};
+        scene_changed_ = true;
+    }
     // What another program saved is shown here too, unless something else is being written here.
-    if (functions.name.empty() || functions.text != functions.saved) return;
+    if (functions.name.empty() || functions.text != functions.saved) return shown;
     const auto text = session.document().functions().text(functions.name);
-    if (!text || *text == functions.saved) return;
+    if (!text || *text == functions.saved) return shown;
     functions.text = functions.saved = functions.tried = *text;
     const auto errors = session.document().functions().errors();
     const auto wrong = errors.find(functions.name);
     functions.error = wrong == errors.end() ? std::string() : wrong->second;
-    function_names_revision_ = ~uint64_t{0};
-    scene_changed_ = true;
+    return true;
 }
 
 void build_function_panel(App& app, ui::Ui& ui) {

@@ -104,8 +104,7 @@ Status WindowLoop::iterate() {
     LOAM_TRY(poll_shaders(now));
     if (polls_functions() && now >= next_function_poll_s_) {
         next_function_poll_s_ = now + kShaderPoll_s;
-        app_.poll_functions();
-        if (app_.scene_is_changed()) build_again_ = true;
+        build_again_ |= app_.poll_functions();
     }
     const bool exposed = platform_.take_exposed();
     const std::vector<ui::Event> events = platform_.take_events();

@@ -175,6 +175,37 @@ TEST(UiTextEdit, WordsAndLimits) {
     EXPECT_EQ(e.text(), "änorth höhe");
 }
 
+TEST(UiTextEdit, ManyLines) {
+    TextEdit e;
+    e.many_lines = true;
+    e.set_text("long line\n  äö\n\nlast");
+    e.place(7, Select::no);
+    e.move_lines(1, Select::no);
+    EXPECT_EQ(e.caret(), e.line_end(10)) << "the line is shorter";
+    e.move_lines(1, Select::no);
+    EXPECT_EQ(e.text()[e.caret()], '\n');
+    e.move_lines(-2, Select::no);
+    EXPECT_EQ(e.caret(), 7u) << "the column is remembered";
+    e.move_lines(2, Select::yes);
+    EXPECT_EQ(e.selection_begin(), 7u);
+    e.move_lines(99, Select::no);
+    EXPECT_EQ(e.line_end(e.caret()), e.text().size());
+    e.move_back(Step::line, Select::no);
+    EXPECT_EQ(e.text().substr(e.caret()), "last");
+    e.place(12, Select::no);  // before ä
+    e.insert_line_break();
+    EXPECT_EQ(e.text(), "long line\n  \n  äö\n\nlast") << "as far in as the line before";
+    e.insert("a\tb\nc");
+    EXPECT_EQ(e.text(), "long line\n  \n  a    b\ncäö\n\nlast");
+    EXPECT_TRUE(e.undo());
+    EXPECT_TRUE(e.undo());
+    EXPECT_EQ(e.text(), "long line\n  äö\n\nlast");
+    e.many_lines = false;
+    e.select_all();
+    e.insert("a\nb");
+    EXPECT_EQ(e.text(), "a b");
+}
+
 TEST(UiTextEdit, RandomEditsKeepTheCaretOnCodePoints) {
     TextEdit e;
     std::mt19937 random(3);

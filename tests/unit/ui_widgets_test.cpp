@@ -521,5 +521,47 @@ TEST(UiFuzz, RandomEventsNeverCrashAndLeaveNothingCaptured) {
     EXPECT_EQ(h.last.duplicate_ids, 0);
 }
 
+TEST(UiWidgets, ATextAreaIsTypedInAndScrolls) {
+    Harness h;
+    std::string value = "one\ntwo\nthree";
+    const TextAreaMark marks[] = {{2, "wrong"}};
+    const auto build = [&](Ui& ui) {
+        auto column = ui.column_in({0, 0, 400, 100});
+        text_area(ui, "code", value, {.marks = marks});
+    };
+    h.frame({}, build);
+    h.frame(typed("x"), build);
+    EXPECT_EQ(value, "one\ntwo\nthree") << "not before it is clicked";
+    h.frame({Event::move({300, 25}), Event::press({300, 25})}, build);
+    h.frame({Event::release({300, 25})}, build);
+    EXPECT_TRUE(h.last.wants_keyboard);
+    h.frame(typed("!"), build);
+    EXPECT_EQ(value, "one\ntwo!\nthree") << "a click beside a line goes to its end";
+    h.frame({Event::key_down(Key::enter)}, build);
+    h.frame({Event::key_down(Key::tab)}, build);
+    h.frame(typed("y"), build);
+    EXPECT_EQ(value, "one\ntwo!\n    y\nthree");
+    h.frame({Event::key_down(Key::home, kShift)}, build);
+    h.frame({Event::key_down(Key::del)}, build);
+    EXPECT_EQ(value, "one\ntwo!\n\nthree");
+    for (int i = 0; i < 20; ++i) h.frame({Event::key_down(Key::enter)}, build);
+    h.frame(typed("z"), build);
+    EXPECT_EQ(value.find("z"), std::string("one\ntwo!\n\n").size() + 19);
+    // The caret is in view: a click at the foot lands near it, not at the text's beginning.
+    h.frame({Event::move({100, 90}), Event::press({100, 90})}, build);
+    h.frame({Event::release({100, 90})}, build);
+    h.frame(typed("#"), build);
+    EXPECT_GT(value.find("#"), 20u);
+    h.frame({Event::key_down(Key::z, kCtrl)}, build);
+    EXPECT_EQ(value.find("#"), std::string::npos);
+    h.frame({Event::key_down(Key::escape)}, build);
+    h.frame({}, build);
+    h.frame(typed("q"), build);
+    EXPECT_EQ(value.find("q"), std::string::npos) << "Escape gives the keyboard back";
+    value = "given";
+    h.frame({}, build);
+    EXPECT_EQ(value, "given");
+}
+
 }  // namespace
 }  // namespace loam::ui

@@ -410,6 +410,55 @@ def test_an_event_is_placed_played_scrubbed_and_undone(display, project, opened)
     assert changed_share(start, display.screenshot(), spot) < 0.02, "undone at any time"
 
 
+def test_a_decal_is_made_by_a_function_that_is_written_meanwhile(display, project, opened):
+    window = opened()
+    display.key("8")
+    window.settle()
+    away(display, window)
+    start = display.screenshot()
+    spot = place(window, 0.5, 0.85)
+    display.click(1190, 280)  # the tool's function: the first one after "None", cracks
+    display.key("Down", "Return")
+    window.settle()
+    display.xdotool("mousemove", *spot)
+    window.settle()
+    display.xdotool("click", 1)
+    decal = wait_for_command(window, "decal")
+    assert decal["function"] == "cracks" and decal["layer"] == ""
+    display.key("Escape")
+    away(display, window)
+    cracked = display.screenshot()
+    keep("function_cracks.png", cracked)
+    assert changed_share(start, cracked, spot) > 0.5
+
+    display.key("F4")
+    window.settle()
+    x, y, w, h = window.last("viewport")["rect"]
+    display.click(400, y + h + 120)  # into the text
+    display.key("ctrl+End", "BackSpace", "BackSpace")  # the last brace
+    display.xdotool("type", "    nothing;")
+    time.sleep(1)
+    window.settle()
+    keep("function_wrong.png", display.screenshot())
+    file = project / "decals" / "cracks.glsl"
+    assert "nothing" not in file.read_text(), "what does not compile is not saved"
+    for _ in "nothing;":
+        display.key("BackSpace")
+    display.xdotool("type", "s.colour = vec3(0.0, 0.0, 1.0); }")
+    window.wait_message("Cracks compiles")
+    assert file.read_text().rstrip().endswith("s.colour = vec3(0.0, 0.0, 1.0); }")
+    display.key("F4")
+    away(display, window)
+    blue = display.screenshot()
+    keep("function_blue.png", blue)
+    assert changed_share(cracked, blue, spot) > 0.5
+    red, _, strong = blue.getpixel(spot)
+    assert strong > 2 * red
+    display.key("ctrl+z")
+    away(display, window)
+    assert changed_share(start, display.screenshot(), spot) < 0.02
+
+
 def test_a_hole_is_cut_closed_and_undone(display, project, opened):
     window = opened()
     away(display, window)
