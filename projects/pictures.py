@@ -122,6 +122,39 @@ def imagery_picture(project, folder, path):
     project.set("imagery.file", "")
 
 
+def functions_picture(project, path):
+    """Decals that are functions, on level ground: a trodden path with puddles, a truck's marks and its oil, and what lies around.
+    Undone afterwards."""
+    x, y = 520, 1840
+
+    def spline(places, width, name, **keywords):
+        points = project.spline_through([(x + i, y + j, float(project.height(x + i, y + j))) for i, j in places], width)
+        return project.spline(points, function=name, fade_m=width, **keywords)
+
+    def patch(i, j, half, name, heading=0.0, **keywords):
+        return project.decal(x + i, y + j, half_m=half, heading_rad=heading, function=name, outline="ellipse",
+                             **{"edge": 0.6, "seed": int(7 * i + 3 * j + 150), **keywords})
+
+    made = [
+        spline([(-9, -7), (-3, -2), (2, 1), (7, 6), (12, 12)], 2.4, "footpath", edge=0.7, seed=2),
+        spline([(-12, 3), (-4, 2.5), (3, -1.5), (11, -3)], 2.6, "tyre_marks", parameters={"depth": 0.8}, edge=0.1),
+        patch(-2.2, -1.5, [1.7, 1.1], "puddle", 0.8, parameters={"fill": 0.75}),
+        patch(3.9, 2.9, [1.3, 0.9], "puddle", 0.6, parameters={"fill": 0.7}),
+        patch(-5.2, 0.3, [2.2, 1.5], "cracks", 0.3),
+        patch(6.5, 1.0, [2.3, 1.6], "leaf_litter", 0.4, parameters={"amount": 0.75}),
+        patch(-1.5, 4.6, [2.2, 1.5], "moss", 0.2, parameters={"growth": 0.65, "cushion": 0.35}),
+        patch(2.6, -3.2, [2.0, 1.3], "gravel", 0.9, parameters={"stone": 0.1, "amount": 0.75}),
+        patch(5.0, -0.6, [1.0, 0.8], "oil", 1.2, edge=0.3),
+        patch(-4.2, 7.6, [3.4, 2.2], "snow_patch", 0.5, parameters={"melt": 0.35}),
+        patch(5.0, 8.6, [2.2, 1.6], "scorch", 0.1),
+        patch(-0.3, -4.6, [1.7, 1.0], "sand_ripples", 1.3),
+        patch(9.5, 5.2, [1.9, 1.5], "frost", 0.2),
+    ]
+    picture(project, look(project, (x - 0.5, y - 8.6), (x + 0.5, y + 0.3), 5.4), path)
+    for _ in made:
+        project.undo()
+
+
 def event_pictures(project, crash, cratered):
     """A plane has come down; then craters all over its valley, the first ones weathered. Undone afterwards."""
     x, y = 2100, 2220
@@ -208,6 +241,7 @@ def main(source, out):
             imagery_picture(project, folder, f"{out}/imagery.jpg")
             stamp_picture(project, folder, f"{out}/stamps.jpg")
             road_picture(project, f"{out}/road.jpg")
+            functions_picture(project, f"{out}/functions.jpg")
             event_pictures(project, f"{out}/crash.jpg", f"{out}/cratered.jpg")
             for i, (x, y, r) in enumerate([(2040, 1905, 14), (2075, 1935, 6), (2010, 1940, 9), (2120, 1990, 22)]):
                 project.apply({"cmd": "crater", "x": x, "y": y, "radius_m": r, "seed": 3 + i})

@@ -28,6 +28,7 @@ const std::vector<BenchName>& benches() {
          bench_filter},
         {"flat", "a flight over the same ground on maps of 1, 4 and 16 km", bench_flat},
         {"frame", "a fly-through with painting: milliseconds a frame, render scale", bench_frame},
+        {"functions", "decals that are functions against a flat colour; from a text to the ground", bench_functions},
         {"ground", "slopes and curvatures of the recipes and of real elevation data (--dem)", bench_ground},
         {"materials",
          "pages by layers and features; how tile hiding hides; transitions against authored ones",

@@ -51,6 +51,7 @@ Result<BenchReport> bench_feedback(const BenchRequest& request);
 Result<BenchReport> bench_filter(const BenchRequest& request);
 Result<BenchReport> bench_flat(const BenchRequest& request);
 Result<BenchReport> bench_frame(const BenchRequest& request);
+Result<BenchReport> bench_functions(const BenchRequest& request);
 Result<BenchReport> bench_ground(const BenchRequest& request);
 Result<BenchReport> bench_materials(const BenchRequest& request);
 Result<BenchReport> bench_pop(const BenchRequest& request);

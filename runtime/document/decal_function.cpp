@@ -544,7 +544,7 @@ glsl::Texts shader_texts(std::span<const DecalFunction* const> functions) {
 }
 
 std::string plain_message(const std::string& message) {
-    static const std::regex kPrefix("\\b(u[0-9]+_|fn_)");
+    static const std::regex kPrefix("\\b(u[0-9]+_|fn_)|'' : +");
     // What follows from it elsewhere is of no use.
     std::string own;
     for (size_t at = 0; at < message.size();) {

@@ -13,7 +13,8 @@ float relief(Place at) {
     float border = plates(at.p, at.seed).y;
     float edge = ramp(0.5 * gap, 1.5 * gap, border);
     float lip = curl * (1.0 - ramp(gap, 4.0 * gap, border));
-    return plate * (0.05 * edge + 0.04 * lip * edge) * detail(0.5 * plate, at);
+    float deep = mix(0.3, 1.0, detail(2.0 * gap * plate, at));
+    return plate * deep * (0.05 * edge + 0.04 * lip * edge) * detail(0.5 * plate, at);
 }
 
 void decal(Place at, inout Surface s) {

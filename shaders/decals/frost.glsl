@@ -9,8 +9,11 @@ float rime(Place at) {
     vec2 q = at.p / feather;
     float fold = 0.0;
     float share = 0.5;
+    float size = feather;
     for (int i = 0; i < 4; ++i) {
-        fold += share * (1.0 - abs(noise(q, at.seed + 10u)));
+        // Finer ones than texels can show are their mean.
+        fold += share * mix(0.75, 1.0 - abs(noise(q, at.seed + 10u)), detail(0.4 * size, at));
+        size /= 2.1;
         q = vec2(0.8 * q.x - 0.6 * q.y, 0.6 * q.x + 0.8 * q.y) * 2.1;
         share *= 0.55;
     }
@@ -25,7 +28,8 @@ float relief(Place at) {
 void decal(Place at, inout Surface s) {
     float white = clamp(rime(at) - 0.9 + 1.3 * cold * at.edge, 0.0, 1.0);
     s.colour *= srgb(0.90, 0.94, 0.98);
-    s.gloss = mix(0.35, 0.75, sparkle * random(at.p / max(0.004, at.texel_m), at.seed + 3u));
+    float crystal = mix(0.5, random(at.p / 0.006, at.seed + 3u), detail(0.006, at));
+    s.gloss = mix(0.35, 0.75, sparkle * crystal);
     s.metalness = 0.0;
     s.occlusion = 1.0;
     s.cover = 0.9 * white;

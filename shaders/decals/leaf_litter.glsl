@@ -41,8 +41,9 @@ void decal(Place at, inout Surface s) {
     vec2 top = lying.x > 0.0 ? lying : below;
     float seen = detail(0.5 * leaf, at);
     float age = clamp(autumn * 1.4 + 0.5 * (mix(0.5, top.y, seen) - 0.5), 0.0, 1.4);
-    vec3 leaf_colour = mix(srgb(0.36, 0.42, 0.16), srgb(0.74, 0.55, 0.20), ramp(0.1, 0.7, age));
-    leaf_colour = mix(leaf_colour, srgb(0.42, 0.26, 0.15), ramp(0.6, 1.2, age));
+    age += 0.35 * fbm(at.p / (6.0 * leaf), at.seed + 30u, 3);
+    vec3 leaf_colour = mix(srgb(0.33, 0.37, 0.17), srgb(0.62, 0.46, 0.22), ramp(0.1, 0.7, age));
+    leaf_colour = mix(leaf_colour, srgb(0.36, 0.25, 0.17), ramp(0.55, 1.1, age));
     s.colour *= leaf_colour * (0.7 + 0.5 * mix(0.5, top.y, seen));
     s.gloss = 0.2;
     s.occlusion = mix(0.85, lying.x > 0.0 ? 1.0 : 0.6, seen);

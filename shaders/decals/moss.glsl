@@ -19,8 +19,8 @@ void decal(Place at, inout Surface s) {
     float m = mound(at.p, at.seed) + 0.35 * (at.edge - 1.0);
     float there = ramp(0.72 - growth * 0.6, 0.84 - growth * 0.55, m);
     float shade = 0.5 + 0.5 * fbm(at.p * 14.0, at.seed + 5u, 3) * detail(0.07, at);
-    vec3 green = mix(srgb(0.52, 0.56, 0.22), srgb(0.21, 0.33, 0.11), damp);
-    s.colour *= mix(green, green * vec3(1.35, 1.25, 0.8), shade * there);
+    vec3 green = mix(srgb(0.40, 0.44, 0.19), srgb(0.17, 0.26, 0.10), damp);
+    s.colour *= mix(green, green * vec3(1.3, 1.2, 0.85), shade * there);
     s.gloss = mix(0.12, 0.3, damp);
     s.metalness = 0.0;
     s.occlusion = mix(0.75, 1.0, ramp(0.5, 1.0, m));

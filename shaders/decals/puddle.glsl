@@ -3,10 +3,10 @@
 //@ ripple 0.0 0 1 Wind on the water
 //@ mud 0.5 0 1 How brown the water is
 
-const float SIZE = 1.4;
+const float SIZE = 0.9;
 
 float bed(Place at) {
-    float uneven = 0.35 * fbm(at.p / SIZE, at.seed, 4) * detail(SIZE, at);
+    float uneven = 0.8 * fbm(at.p / SIZE, at.seed, 5) * detail(SIZE, at);
     vec2 share = at.p / at.half_m;
     return 1.0 - dot(share, share) + uneven;
 }
@@ -20,10 +20,11 @@ float relief(Place at) {
 void decal(Place at, inout Surface s) {
     float depth = bed(at) - (1.0 - fill);
     float water = ramp(0.0, 0.15, depth);
-    float wet = ramp(-0.35, 0.05, depth);
-    vec3 deep = mix(srgb(0.16, 0.19, 0.19), srgb(0.33, 0.27, 0.19), mud);
+    float wet = ramp(-0.3, 0.05, depth);
+    // What it mirrors of the sky, over its bed.
+    vec3 deep = mix(srgb(0.36, 0.42, 0.46), srgb(0.42, 0.38, 0.32), mud) * mix(1.15, 0.75, ramp(0.0, 0.5, depth));
     s.colour = s.colour * mix(srgb(0.36, 0.31, 0.25), deep, water);
     s.gloss = mix(0.55, 0.97, water);
     s.occlusion = 1.0;
-    s.cover = max(water * mix(0.75, 0.95, ramp(0.0, 0.5, depth)), 0.45 * wet);
+    s.cover = max(water * mix(0.7, 0.97, ramp(0.0, 0.3, depth)), 0.6 * wet);
 }

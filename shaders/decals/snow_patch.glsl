@@ -5,7 +5,7 @@
 
 float depth_at(Place at) {
     float bays = fbm(at.p / drift, at.seed, 5);
-    return at.edge * 1.2 - melt + 0.55 * bays;
+    return at.edge * 1.3 - 0.25 - melt + 0.9 * bays;
 }
 
 float relief(Place at) {

@@ -181,3 +181,12 @@ def test_materials(plain):
     assert hard["rms between, of 255"] < 0.5, "masks of one layer a vertex show what the index map does"
     for row in soft:
         assert row["rms between, of 255"] > 1 and row["layers a texel"] > hard["layers a texel"]
+
+
+def test_functions(plain):
+    (_, cost), (_, live) = bench("functions", plain, "--size", "96x54")
+    assert len(cost) == 2
+    for row in cost:
+        assert row["steps"] > 100 and row["function"] > 0 and row["ratio"] > 0.2
+        assert row["from the reference, dB"] > 25
+    assert live[0]["checked, compiled and saved"] > 0
