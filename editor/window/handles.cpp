@@ -49,6 +49,53 @@ void drag_box(Box& box, const Handle& handle, glm::dvec2 to) {
     }
 }
 
+// A box in space, seen from above: what of its sides can be seen from there. One that stands on edge has no handle for the
+// axis that is upright.
+constexpr double kLeastSeen = 0.15;  // of an axis, that has a handle
+
+double heading_of(glm::dvec2 v) {
+    return std::atan2(v.x, v.y);
+}
+
+template <typename Box>
+Handles space_box_handles(const Box& box) {
+    const VolumeAxes axes = axes_of(box.direction, box.roll_rad);
+    const glm::dvec2 middle(box.center_m), x(axes.x), y(axes.y);
+    Handles list{{Role::move, middle, 0, middle}};
+    if (glm::length(y) > kLeastSeen) list.push_back({Role::turn, middle + y * std::abs(box.half_m.y), 0, middle});
+    if (glm::length(x) > kLeastSeen) list.push_back({Role::side, middle + x * std::abs(box.half_m.x), 0, middle});
+    return list;
+}
+
+// Turned around the upright through its middle: by its direction, or by its roll where that points straight down.
+template <typename Box>
+void turn_to(Box& box, double heading_rad) {
+    const auto heading_now = [](const Box& b) { return heading_of(glm::dvec2(axes_of(b.direction, b.roll_rad).y)); };
+    const double turn = heading_rad - heading_now(box);
+    if (std::hypot(box.direction.x, box.direction.y) > 1e-6 * std::abs(box.direction.z)) {
+        const double c = std::cos(turn), s = std::sin(turn);
+        box.direction = {c * box.direction.x + s * box.direction.y, c * box.direction.y - s * box.direction.x,
+                         box.direction.z};
+        return;
+    }
+    Box other = box;
+    box.roll_rad -= turn;  // seen from below it turns the other way
+    other.roll_rad += turn;
+    const auto off = [&](const Box& b) { return std::abs(std::remainder(heading_now(b) - heading_rad, 2 * M_PI)); };
+    if (off(other) < off(box)) box = other;
+    box.roll_rad = std::remainder(box.roll_rad, 2 * M_PI);
+}
+
+template <typename Box>
+void drag_space_box(Box& box, const Handle& handle, glm::dvec2 to) {
+    const glm::dvec2 middle(box.center_m);
+    const VolumeAxes axes = axes_of(box.direction, box.roll_rad);
+    const int axis = handle.role == Role::side ? 0 : 1;
+    const double seen = glm::length(glm::dvec2(axis == 0 ? axes.x : axes.y));
+    if (axis == 1 && glm::length(to - middle) > kSmallest_m) turn_to(box, heading_of(to - middle));
+    box.half_m[axis] = signed_like(std::clamp(reach(middle, to) / seen, kSmallest_m, kLargest_m), box.half_m[axis]);
+}
+
 template <typename Round>
 Handles round_handles(const Round& round, double radius_m) {
     const glm::dvec2 middle(round.x_m, round.y_m);
@@ -84,10 +131,10 @@ Handles handles(const Slide& s) {
             {Role::radius, from + glm::dvec2(s.radius_m, 0), 0, from}};
 }
 Handles handles(const VolumeDecal& v) {
-    const glm::dvec2 at(v.center_m);
-    return {{Role::move, at, 0, at}};
+    return space_box_handles(v);
 }
 Handles handles(const Cutout& c) {
+    if (c.form == CutoutForm::box || c.form == CutoutForm::cylinder) return space_box_handles(c);
     glm::dvec2 at(c.center_m);
     if (c.form == CutoutForm::brush) at = middle_of(c.dabs);
     if (c.form == CutoutForm::convex) {
@@ -160,8 +207,14 @@ struct Drag {
         else
             s.to_m += to - glm::dvec2(s.x_m, s.y_m), s.x_m = to.x, s.y_m = to.y;
     }
-    void operator()(VolumeDecal& v) const { v.center_m = {to, v.center_m.z + rise_m}; }
+    void operator()(VolumeDecal& v) const {
+        if (handle.role == Role::move)
+            v.center_m = {to, v.center_m.z + rise_m};
+        else
+            drag_space_box(v, handle, to);
+    }
     void operator()(Cutout& c) const {
+        if (handle.role != Role::move) return drag_space_box(c, handle, to);
         const glm::dvec2 by = to - handle.at_m;
         c.center_m += glm::dvec3(by, rise_m);
         for (glm::dvec2& dab : c.dabs) dab += by;

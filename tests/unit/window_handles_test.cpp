@@ -83,6 +83,32 @@ TEST(Handles, GoWhereTheyAreTakenAndTheDocumentTakesWhatComesOfIt) {
     EXPECT_GT(dragged_count, 1500);
 }
 
+TEST(Handles, BoxesInSpaceTurnAroundTheUprightAndGrow) {
+    for (const glm::dvec3& direction : {glm::dvec3(0, 0, -1), glm::dvec3(0, 0, 2), glm::dvec3(0.3, -0.4, -1),
+                                        glm::dvec3(1, 0.2, -0.4), glm::dvec3(1e-8, 0, -1)}) {
+        VolumeDecal volume{.center_m = {50, 60, 10}, .half_m = {3, -2, 4}, .direction = direction, .roll_rad = 0.7};
+        std::vector<Handle> handles = handles_of(volume);
+        ASSERT_EQ(handles.size(), 3u);
+        for (const glm::dvec2& away : {glm::dvec2(9, 0), glm::dvec2(-5, -7), glm::dvec2(0.1, -4)}) {
+            const glm::dvec2 to = glm::dvec2(50, 60) + away;
+            const auto turned = std::get<VolumeDecal>(dragged(volume, handles[1], {to, 0}, 0));
+            EXPECT_LT(glm::length(handles_of(turned)[1].at_m - to), 1e-6);
+            EXPECT_NEAR(glm::normalize(turned.direction).z, glm::normalize(direction).z, 1e-12) << "as steep as before";
+            EXPECT_EQ(turned.half_m.x, 3);
+            EXPECT_LT(turned.half_m.y, 0) << "mirrored as before";
+            EXPECT_EQ(turned.center_m, volume.center_m);
+            const auto wider = std::get<VolumeDecal>(dragged(volume, handles[2], {to, 0}, 0));
+            EXPECT_NEAR(glm::length(handles_of(wider)[2].at_m - glm::dvec2(50, 60)), glm::length(away), 1e-6);
+            EXPECT_EQ(wider.direction, volume.direction);
+        }
+    }
+    const Cutout box{.form = CutoutForm::box, .center_m = {5, 6, 1}, .half_m = {3, 2, 4}};
+    EXPECT_EQ(handles_of(box).size(), 3u);
+    EXPECT_EQ(handles_of(Cutout{.form = CutoutForm::brush, .dabs = {{1, 2}}, .radius_m = 2}).size(), 1u);
+    // Lying on its side, what is upright has no handle.
+    EXPECT_EQ(handles_of(VolumeDecal{.half_m = {3, 2, 4}, .direction = {1, 0, 0}}).size(), 2u);
+}
+
 TEST(Handles, ATangentTurnsTheOneAcrossItsAnchor) {
     SplineDecal spline;
     for (int i = 0; i < 7; ++i) spline.points.push_back({10.0 * i, 0, 1, 4});
