@@ -46,7 +46,8 @@ Json function_report(FunctionLibrary& functions) {
     for (Json& entry : list) {
         const std::string name = entry["name"];
         if (const auto wrong = errors.find(name); wrong != errors.end()) entry["error"] = wrong->second;
-        if (const auto texels = failed.find(name); texels != failed.end()) entry["failed_texels"] = texels->second;
+        if (const auto texels = failed.find(name); texels != failed.end())
+            entry["failed_texels"] = texels->second;
     }
     return list;
 }

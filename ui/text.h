@@ -28,7 +28,8 @@ struct TextStyle {
 };
 
 struct FontFiles {
-    std::vector<std::string> regular{}, medium{}, semibold{}, mono{};  // candidates, the first that opens is taken
+    std::vector<std::string> regular{}, medium{}, semibold{},
+        mono{};                                            // candidates, the first that opens is taken
     std::vector<std::string> fallbacks{};                  // asked in order for glyphs the first lacks
 };
 [[nodiscard]] FontFiles default_font_files();

@@ -47,7 +47,8 @@ struct AreaView {
 
 std::vector<size_t> line_begins(const std::string& text) {
     std::vector<size_t> begins{0};
-    for (size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1)) begins.push_back(at + 1);
+    for (size_t at = text.find('\n'); at != std::string::npos; at = text.find('\n', at + 1))
+        begins.push_back(at + 1);
     return begins;
 }
 
@@ -104,16 +105,19 @@ void draw_lines(const AreaView& v, const std::string& all, const TextAreaDesc& d
             const size_t to = std::min(edit.selection_end(), end);
             const bool break_too = edit.selection_end() > end && edit.selection_begin() <= end;
             if (from < to || break_too) {
-                const float a = v.x_of(all, line, std::min(from, end)), b = v.x_of(all, line, std::max(from, to));
-                ui.draw().rect({v.text.x + a - v.state.scroll.x, y, b - a + (break_too ? v.letter_px : 0), v.line_px},
-                               ui.theme.accent_soft);
+                const float a = v.x_of(all, line, std::min(from, end)),
+                            b = v.x_of(all, line, std::max(from, to));
+                ui.draw().rect(
+                    {v.text.x + a - v.state.scroll.x, y, b - a + (break_too ? v.letter_px : 0), v.line_px},
+                    ui.theme.accent_soft);
             }
         }
         const size_t comment = content.find("//");
         const auto part = [&](std::string_view words, size_t at, Color color) {
             if (words.empty()) return;
             const float x = caret_x(ui.text().shape(content, style), at);
-            ui.draw().text(ui.text(), {v.text.x + std::round(x - v.state.scroll.x), baseline}, words, style, color);
+            ui.draw().text(ui.text(), {v.text.x + std::round(x - v.state.scroll.x), baseline}, words, style,
+                           color);
         };
         part(content.substr(0, std::min(comment, content.size())), 0, ui.theme.text);
         if (comment != std::string_view::npos) part(content.substr(comment), comment, ui.theme.text_dim);
@@ -162,7 +166,8 @@ Edit text_area(Ui& ui, std::string_view name, std::string& value, const TextArea
     auto& state = ui.state<AreaState>(id);
     ui.push_id(id);
     const float line_px = std::round(ui.px(kLine)), letter_px = ui.text().measure("0", ui.code_style());
-    const Rect text{place.x + ui.px(kNumbers), place.y, std::max(place.w - ui.px(kNumbers + 10), 1.0f), place.h};
+    const Rect text{place.x + ui.px(kNumbers), place.y, std::max(place.w - ui.px(kNumbers + 10), 1.0f),
+                    place.h};
     const Rect field{place.x, place.y, place.w - ui.px(8), place.h};
     const Response r = ui.interact(ui.make_id("text"), field, Sense::edit);
     Edit result;

@@ -1,4 +1,5 @@
-// Many lines of text: caret, selection, clipboard, undo, line numbers, marks at lines. For code: one width a letter.
+// Many lines of text: caret, selection, clipboard, undo, line numbers, marks at lines. For code: one width a
+// letter.
 #pragma once
 
 #include <span>

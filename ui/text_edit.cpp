@@ -148,7 +148,9 @@ void TextEdit::insert_line_break() {
     const size_t begin = line_begin(selection_begin());
     size_t end = begin;
     while (end < selection_begin() && text_[end] == ' ') ++end;
-    insert("\n" + text_.substr(begin, end - begin));
+    std::string line(1, '\n');
+    line.append(text_, begin, end - begin);
+    insert(line);
 }
 
 void TextEdit::erase_back(Step step) {

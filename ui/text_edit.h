@@ -28,7 +28,8 @@ class TextEdit {
     void select_all();
     void select_word(size_t byte);
 
-    // Replaces the selection; controls are dropped, tabs become spaces, and so do line breaks but in many lines.
+    // Replaces the selection; controls are dropped, tabs become spaces, and so do line breaks but in many
+    // lines.
     void insert(std::string_view utf8);
     void insert_line_break();  // the new line begins as far in as this one
     void erase_back(Step step);

@@ -193,9 +193,7 @@ class Ui {
     [[nodiscard]] TextStyle small_style() const {
         return {Weight::regular, theme.font_size_small * theme.scale};
     }
-    [[nodiscard]] TextStyle code_style() const {
-        return {Weight::mono, (theme.font_size - 1) * theme.scale};
-    }
+    [[nodiscard]] TextStyle code_style() const { return {Weight::mono, (theme.font_size - 1) * theme.scale}; }
     enum class Align { left, center, right };
     // One line, vertically centred by cap height, shortened with an ellipsis.
     void draw_label(const Rect& area, std::string_view text, TextStyle style, Color color,

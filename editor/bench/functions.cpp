@@ -1,6 +1,6 @@
-// What decals that are functions cost: each shipped one against a flat colour of the same size, whole pages; how long a
-// text takes from the last key to the ground; and how far pages, which have the function at their texels' centres, are
-// from the reference.
+// What decals that are functions cost: each shipped one against a flat colour of the same size, whole pages;
+// how long a text takes from the last key to the ground; and how far pages, which have the function at their
+// texels' centres, are from the reference.
 #include <algorithm>
 #include <chrono>
 
@@ -27,9 +27,11 @@ Result<double> settle_ms(Session& session, const Camera& view, const BenchReques
 
 // Of the picture at rest against the reference with 4 x 4 samples a pixel, dB.
 Result<double> reference_psnr_db(Session& session, const Camera& view, const BenchRequest& request) {
-    auto shown = session.render({.camera = view, .width = request.width, .height = request.height, .supersample = 4});
+    auto shown =
+        session.render({.camera = view, .width = request.width, .height = request.height, .supersample = 4});
     if (!shown) return shown.error();
-    auto exact = session.render({.camera = view, .width = request.width, .height = request.height, .reference = true});
+    auto exact =
+        session.render({.camera = view, .width = request.width, .height = request.height, .reference = true});
     if (!exact) return exact.error();
     return psnr_db(*shown, *exact);
 }
@@ -59,14 +61,16 @@ Result<BenchReport> bench_functions(const BenchRequest& request) {
             for (const bool plain : {true, false}) {
                 TerrainDecal d = decal(plain ? "" : function);
                 d.material.seed = uint32_t(i);
-                if (auto edited = (*session)->apply({EditOperatorCommand{id, d, {}}}); !edited) return edited.error();
+                if (auto edited = (*session)->apply({EditOperatorCommand{id, d, {}}}); !edited)
+                    return edited.error();
                 auto ms = settle_ms(**session, view, request);
                 if (!ms) return ms.error();
                 if (i > 0) (plain ? flat : made).push_back(*ms);  // the first one makes pipelines
             }
         return std::array{spread_of(flat).median, spread_of(made).median};
     };
-    BenchTable cost{"a decal of 16 m by functions: to a picture at rest, milliseconds (medians, in turn)", {}};
+    BenchTable cost{"a decal of 16 m by functions: to a picture at rest, milliseconds (medians, in turn)",
+                    {}};
     FunctionLibrary& functions = (*session)->document().functions();
     auto names = functions.names();
     if (request.quick) names.resize(2);
@@ -91,7 +95,8 @@ Result<BenchReport> bench_functions(const BenchRequest& request) {
     }
 
     BenchTable live{"from a text to the ground, milliseconds; and the error without a function", {}};
-    if (auto edited = (*session)->apply({EditOperatorCommand{id, decal(names[0]), {}}}); !edited) return edited.error();
+    if (auto edited = (*session)->apply({EditOperatorCommand{id, decal(names[0]), {}}}); !edited)
+        return edited.error();
     if (auto ms = settle_ms(**session, view, request); !ms) return ms.error();
     std::vector<double> applied, shown;
     const auto text = functions.text(names[0]);
@@ -108,9 +113,10 @@ Result<BenchReport> bench_functions(const BenchRequest& request) {
         if (!ms) return ms.error();
         shown.push_back(*ms);
     }
-    live.rows.push_back({{"a flat colour from the reference, dB", rounded(*flat_db, 1)},
-                         {"checked, compiled and saved", rounded(spread_of(applied).median, 1)},
-                         {"then, with the pipeline, to a picture at rest", rounded(spread_of(shown).median, 0)}});
+    live.rows.push_back(
+        {{"a flat colour from the reference, dB", rounded(*flat_db, 1)},
+         {"checked, compiled and saved", rounded(spread_of(applied).median, 1)},
+         {"then, with the pipeline, to a picture at rest", rounded(spread_of(shown).median, 0)}});
     return BenchReport{cost, live};
 }
 

@@ -18,9 +18,9 @@ std::string shown(const Option& option) {
 
 const std::vector<Verb>& verbs() {
     static const std::vector<Verb> table = {
-        edit_verb(),    new_verb(),     import_verb(),     export_verb(), layer_verb(),  stamp_verb(),    function_verb(),
-        imagery_verb(), weights_verb(), pack_verb(),       encode_verb(), replay_verb(), render_verb(),
-        info_verb(),    set_verb(),     transition_verb(), verify_verb(), bench_verb()};
+        edit_verb(),     new_verb(),     import_verb(),  export_verb(),     layer_verb(),  stamp_verb(),
+        function_verb(), imagery_verb(), weights_verb(), pack_verb(),       encode_verb(), replay_verb(),
+        render_verb(),   info_verb(),    set_verb(),     transition_verb(), verify_verb(), bench_verb()};
     return table;
 }
 

@@ -20,8 +20,10 @@ void print_list(const Json& list) {
 
 Status run(const Args& args) {
     const std::string name = args.text("--name"), file = args.text("--set");
-    if (!file.empty() && name.empty()) return error("--set needs --name, the function that the file is the text of");
-    auto document = Document::open(args.positional(0), file.empty() ? OpenMode::read_only : OpenMode::read_write);
+    if (!file.empty() && name.empty())
+        return error("--set needs --name, the function that the file is the text of");
+    auto document =
+        Document::open(args.positional(0), file.empty() ? OpenMode::read_only : OpenMode::read_write);
     if (!document) return document.error();
     if (!file.empty()) {
         std::ifstream stream(file, std::ios::binary);
@@ -50,15 +52,17 @@ Status run(const Args& args) {
 }  // namespace
 
 Verb function_verb() {
-    return {.name = "function",
-            .summary = "lists the functions that decals can be made by, prints one's text or sets it",
-            .positionals = {{"PROJECT", "project folder"}},
-            .options = {{"--name", ValueKind::text, "N", "print the text of this one"},
-                        {"--set", ValueKind::text, "FILE", "make FILE the text of --name, if it compiles"},
-                        {"--json", ValueKind::none, "", "print the list as JSON"}},
-            .run = run,
-            .notes = "docs/decal_functions.md says how they are written. A decal is made by one with \"function\" and "
-                     "\"parameters\" in its command."};
+    return {
+        .name = "function",
+        .summary = "lists the functions that decals can be made by, prints one's text or sets it",
+        .positionals = {{"PROJECT", "project folder"}},
+        .options = {{"--name", ValueKind::text, "N", "print the text of this one"},
+                    {"--set", ValueKind::text, "FILE", "make FILE the text of --name, if it compiles"},
+                    {"--json", ValueKind::none, "", "print the list as JSON"}},
+        .run = run,
+        .notes =
+            "docs/decal_functions.md says how they are written. A decal is made by one with \"function\" and "
+            "\"parameters\" in its command."};
 }
 
 }  // namespace loam::cli

@@ -433,11 +433,14 @@ void bind_edits(py::class_<Project>& c) {
     c.def(
         "functions",
         [](Project& p) { return to_python(function_report(p.session().document().functions())); },
-        "The functions that decals can be made by: name, says, steps, parameters (value, min, max, says), and where "
+        "The functions that decals can be made by: name, says, steps, parameters (value, min, max, says), "
+        "and where "
         "something is wrong error and failed_texels.");
     c.def(
         "function_text",
-        [](Project& p, const std::string& name) { return unwrap(p.session().document().functions().text(name)); },
+        [](Project& p, const std::string& name) {
+            return unwrap(p.session().document().functions().text(name));
+        },
         "The text of a function.", py::arg("name"));
     c.def(
         "set_function",

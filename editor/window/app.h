@@ -161,7 +161,7 @@ class App {
     [[nodiscard]] const std::vector<std::string>& function_names();
     void edit_function(const std::string& name);  // in the panel; what was written there before is kept
     void try_function();                          // saves and shows the text if it compiles
-    bool poll_functions();  // twice a second; whether something is shown otherwise
+    bool poll_functions();                        // twice a second; whether something is shown otherwise
 
     // --- the time (timeline.cpp) ---
     bool show_timeline = false;

@@ -1,5 +1,5 @@
-// Functions of decals: which one a decal is made by, its parameters, and its text, which is compiled while it is
-// written; what is on the ground stays until the new text compiles.
+// Functions of decals: which one a decal is made by, its parameters, and its text, which is compiled while it
+// is written; what is on the ground stays until the new text compiles.
 #include <algorithm>
 #include <charconv>
 
@@ -49,7 +49,8 @@ std::vector<ui::TextAreaMark> marks_of(const std::string& message) {
 
 }  // namespace
 
-bool function_properties(App& app, ui::Ui& ui, std::string& function, std::map<std::string, double>& parameters) {
+bool function_properties(App& app, ui::Ui& ui, std::string& function,
+                         std::map<std::string, double>& parameters) {
     const std::vector<std::string>& names = app.function_names();
     std::vector<std::string> titles{"None"};
     for (const std::string& name : names) titles.push_back(title_of_function(name));
@@ -78,6 +79,14 @@ bool function_properties(App& app, ui::Ui& ui, std::string& function, std::map<s
             parameters[p.name] = value;
             changed = true;
         }
+        // What the text does not have any more, or not so far, would be refused.
+        if (changed) {
+            std::map<std::string, double> kept;
+            for (const FunctionParameter& p : (*shown)->parameters)
+                if (const auto set = parameters.find(p.name); set != parameters.end())
+                    kept[p.name] = std::clamp(set->second, p.min, p.max);
+            parameters = std::move(kept);
+        }
     }
     if (ui::button(ui, "Edit function…")) app.edit_function(function);
     return changed;
@@ -104,10 +113,17 @@ void selected_decal_properties(App& app, ui::Ui& ui) {
         any = true;
     }
     any |= function_properties(app, ui, changed.function, changed.parameters);
+    if (material->function.empty() && !changed.function.empty()) {  // its own colours, not those of a layer
+        changed.layer.clear();
+        changed.colour = {1, 1, 1};
+    }
     ui.pop_id();
-    if (any) std::visit([&](auto& kind) {
-        if constexpr (requires { kind.material.channels; }) kind.material = changed;
-    }, shape);
+    if (any)
+        std::visit(
+            [&](auto& kind) {
+                if constexpr (requires { kind.material.channels; }) kind.material = changed;
+            },
+            shape);
     app.edit_selected(any ? std::optional(shape) : std::nullopt, ui);
 }
 
@@ -132,9 +148,11 @@ const std::vector<std::string>& App::function_names() {
 
 void App::edit_function(const std::string& name) {
     if (functions.name != name) {
-        if (!functions.name.empty() && functions.text != functions.saved) function_drafts_[functions.name] = functions.text;
+        if (!functions.name.empty() && functions.text != functions.saved)
+            function_drafts_[functions.name] = functions.text;
         const auto text = session.document().functions().text(name);
-        functions = {.name = name, .text = text ? *text : std::string(), .saved = text ? *text : std::string()};
+        functions = {
+            .name = name, .text = text ? *text : std::string(), .saved = text ? *text : std::string()};
         if (!text) functions.error = text.message();
         if (const auto draft = function_drafts_.find(name); draft != function_drafts_.end()) {
             functions.text = draft->second;
@@ -181,8 +199,12 @@ void build_function_panel(App& app, ui::Ui& ui) {
         app.edit_function(app.function_names().front());
     }
     auto panel = ui::panel(ui, "functions",
-                           {.edge = ui::Edge::bottom, .size = 300, .min_size = 120, .max_size = 700,
-                            .resizable = true, .padding = 6});
+                           {.edge = ui::Edge::bottom,
+                            .size = 300,
+                            .min_size = 120,
+                            .max_size = 700,
+                            .resizable = true,
+                            .padding = 6});
     FunctionText& f = app.functions;
     ui::Rect area = ui.allocate_rest();
     {
@@ -203,12 +225,15 @@ void build_function_panel(App& app, ui::Ui& ui) {
         if (!f.error.empty())
             ui::label(ui, f.error.substr(0, f.error.find('\n')), ui::Tone::error);
         else if (const auto bad = failed.find(f.name); bad != failed.end())
-            ui::label(ui, fmt::format("It gave no number (NaN or infinite) at {} texels, which stay as they are", bad->second),
+            ui::label(ui,
+                      fmt::format("It gave no number (NaN or infinite) at {} texels, which stay as they are",
+                                  bad->second),
                       ui::Tone::warning);
         else
-            ui::label(ui, f.text != f.saved ? "…"
-                          : shown           ? fmt::format("Compiles, at most {} steps a texel", shown->steps)
-                                            : "No decal shows it yet",
+            ui::label(ui,
+                      f.text != f.saved ? "…"
+                      : shown           ? fmt::format("Compiles, at most {} steps a texel", shown->steps)
+                                        : "No decal shows it yet",
                       ui::Tone::dim);
         if (ui::icon_button(ui, "close functions", {.icon = ui::Icon::cross, .tooltip = "Close", .size = 24}))
             app.show_functions = false;

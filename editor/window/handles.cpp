@@ -49,8 +49,8 @@ void drag_box(Box& box, const Handle& handle, glm::dvec2 to) {
     }
 }
 
-// A box in space, seen from above: what of its sides can be seen from there. One that stands on edge has no handle for the
-// axis that is upright.
+// A box in space, seen from above: what of its sides can be seen from there. One that stands on edge has no
+// handle for the axis that is upright.
 constexpr double kLeastSeen = 0.15;  // of an axis, that has a handle
 
 double heading_of(glm::dvec2 v) {
@@ -62,15 +62,20 @@ Handles space_box_handles(const Box& box) {
     const VolumeAxes axes = axes_of(box.direction, box.roll_rad);
     const glm::dvec2 middle(box.center_m), x(axes.x), y(axes.y);
     Handles list{{Role::move, middle, 0, middle}};
-    if (glm::length(y) > kLeastSeen) list.push_back({Role::turn, middle + y * std::abs(box.half_m.y), 0, middle});
-    if (glm::length(x) > kLeastSeen) list.push_back({Role::side, middle + x * std::abs(box.half_m.x), 0, middle});
+    if (glm::length(y) > kLeastSeen)
+        list.push_back({Role::turn, middle + y * std::abs(box.half_m.y), 0, middle});
+    if (glm::length(x) > kLeastSeen)
+        list.push_back({Role::side, middle + x * std::abs(box.half_m.x), 0, middle});
     return list;
 }
 
-// Turned around the upright through its middle: by its direction, or by its roll where that points straight down.
+// Turned around the upright through its middle: by its direction, or by its roll where that points straight
+// down.
 template <typename Box>
 void turn_to(Box& box, double heading_rad) {
-    const auto heading_now = [](const Box& b) { return heading_of(glm::dvec2(axes_of(b.direction, b.roll_rad).y)); };
+    const auto heading_now = [](const Box& b) {
+        return heading_of(glm::dvec2(axes_of(b.direction, b.roll_rad).y));
+    };
     const double turn = heading_rad - heading_now(box);
     if (std::hypot(box.direction.x, box.direction.y) > 1e-6 * std::abs(box.direction.z)) {
         const double c = std::cos(turn), s = std::sin(turn);
@@ -81,7 +86,9 @@ void turn_to(Box& box, double heading_rad) {
     Box other = box;
     box.roll_rad -= turn;  // seen from below it turns the other way
     other.roll_rad += turn;
-    const auto off = [&](const Box& b) { return std::abs(std::remainder(heading_now(b) - heading_rad, 2 * M_PI)); };
+    const auto off = [&](const Box& b) {
+        return std::abs(std::remainder(heading_now(b) - heading_rad, 2 * M_PI));
+    };
     if (off(other) < off(box)) box = other;
     box.roll_rad = std::remainder(box.roll_rad, 2 * M_PI);
 }
@@ -93,7 +100,8 @@ void drag_space_box(Box& box, const Handle& handle, glm::dvec2 to) {
     const int axis = handle.role == Role::side ? 0 : 1;
     const double seen = glm::length(glm::dvec2(axis == 0 ? axes.x : axes.y));
     if (axis == 1 && glm::length(to - middle) > kSmallest_m) turn_to(box, heading_of(to - middle));
-    box.half_m[axis] = signed_like(std::clamp(reach(middle, to) / seen, kSmallest_m, kLargest_m), box.half_m[axis]);
+    box.half_m[axis] =
+        signed_like(std::clamp(reach(middle, to) / seen, kSmallest_m, kLargest_m), box.half_m[axis]);
 }
 
 template <typename Round>

@@ -18,7 +18,8 @@ void event_tool_properties(App& app, ui::Ui& ui);
 void selected_event_properties(App& app, ui::Ui& ui);
 void selected_decal_properties(App& app, ui::Ui& ui);
 // Which function, and its parameters; whether something was changed.
-bool function_properties(App& app, ui::Ui& ui, std::string& function, std::map<std::string, double>& parameters);
+bool function_properties(App& app, ui::Ui& ui, std::string& function,
+                         std::map<std::string, double>& parameters);
 void build_function_panel(App& app, ui::Ui& ui);
 void new_function_dialog(App& app, ui::Ui& ui);
 bool event_sliders(ui::Ui& ui, Event& event);  // what its kind has; whether something was changed

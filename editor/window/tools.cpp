@@ -166,7 +166,8 @@ DecalMaterial ToolController::material() const {
         m.layer = settings.layer;
     else
         m.parameters = settings.parameters;
-    if (settings.use_tint || (settings.layer.empty() && m.function.empty())) m.colour = glm::dvec3(settings.tint);
+    if (settings.use_tint || (settings.layer.empty() && m.function.empty()))
+        m.colour = glm::dvec3(settings.tint);
     m.opacity = brush().strength;
     m.edge = 1 - brush().hardness;
     m.seed = settings.seed;

@@ -167,10 +167,10 @@ struct FunctionCommand {
 struct UndoCommand {};
 struct RedoCommand {};
 
-using CommandBody =
-    std::variant<SculptCommand, PaintCommand, FillCommand, CraterCommand, FootprintsCommand,
-                 AddOperatorCommand, EditOperatorCommand, ReorderCommand, SetOperatorCommand,
-                 RemoveOperatorCommand, TransitionCommand, TimeCommand, FunctionCommand, UndoCommand, RedoCommand>;
+using CommandBody = std::variant<SculptCommand, PaintCommand, FillCommand, CraterCommand, FootprintsCommand,
+                                 AddOperatorCommand, EditOperatorCommand, ReorderCommand, SetOperatorCommand,
+                                 RemoveOperatorCommand, TransitionCommand, TimeCommand, FunctionCommand,
+                                 UndoCommand, RedoCommand>;
 
 struct Command {
     CommandBody body;

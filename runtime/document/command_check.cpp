@@ -124,7 +124,8 @@ Status check(const DecalMaterial& m) {
     if (!m.function.empty()) LOAM_TRY(check_function_name(m.function));
     if (m.function.empty() && !m.parameters.empty()) return error("\"parameters\" need a \"function\"");
     if (m.parameters.size() > kMostFunctionParameters)
-        return error("{} parameters of a function, the limit is {}", m.parameters.size(), kMostFunctionParameters);
+        return error("{} parameters of a function, the limit is {}", m.parameters.size(),
+                     kMostFunctionParameters);
     for (const auto& [name, value] : m.parameters) LOAM_TRY(in_range(name, value, -1.0e6, 1.0e6));
     return {};
 }

@@ -16,24 +16,81 @@ namespace {
 
 using Names = std::set<std::string, std::less<>>;
 
-const Names kTypes = {"void",  "bool",  "int",   "uint",  "float", "vec2", "vec3", "vec4", "ivec2", "ivec3",
-                      "ivec4", "uvec2", "uvec3", "uvec4", "bvec2", "bvec3", "bvec4", "mat2", "mat3", "mat4"};
+const Names kTypes = {"void",  "bool",  "int",   "uint",  "float", "vec2",  "vec3",  "vec4", "ivec2", "ivec3",
+                      "ivec4", "uvec2", "uvec3", "uvec4", "bvec2", "bvec3", "bvec4", "mat2", "mat3",  "mat4"};
 const Names kKeywords = {"const",    "in",    "out",  "inout",  "if",   "else",    "for",   "return",
                          "continue", "break", "true", "switch", "case", "default", "false", "precise"};
 // Refused by name, so that the sentence says what is wrong.
-const Names kForbidden = {"while",   "do",      "goto",    "discard",    "struct",  "uniform", "buffer",
-                          "layout",  "shared",  "varying", "attribute",  "double",  "asm",     "subroutine",
-                          "demote",  "sampler", "texture", "image",      "coherent", "volatile", "restrict",
-                          "readonly", "writeonly", "invariant", "centroid", "flat", "smooth", "noperspective"};
+const Names kForbidden = {"while",    "do",         "goto",     "discard",      "struct",    "uniform",
+                          "buffer",   "layout",     "shared",   "varying",      "attribute", "double",
+                          "asm",      "subroutine", "demote",   "sampler",      "texture",   "image",
+                          "coherent", "volatile",   "restrict", "readonly",     "writeonly", "invariant",
+                          "centroid", "flat",       "smooth",   "noperspective"};
 // Of GLSL: functions of their arguments alone. No derivatives, which depend on neighbours.
-const Names kBuiltins = {
-    "radians", "degrees", "sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "asinh", "acosh",
-    "atanh", "pow", "exp", "log", "exp2", "log2", "sqrt", "inversesqrt", "abs", "sign", "floor", "trunc",
-    "round", "roundEven", "ceil", "fract", "mod", "min", "max", "clamp", "mix", "step", "smoothstep", "isnan",
-    "isinf", "length", "distance", "dot", "cross", "normalize", "faceforward", "reflect", "refract", "lessThan",
-    "lessThanEqual", "greaterThan", "greaterThanEqual", "equal", "notEqual", "any", "all", "not", "transpose",
-    "determinant", "inverse", "matrixCompMult", "outerProduct", "floatBitsToUint", "floatBitsToInt",
-    "uintBitsToFloat", "intBitsToFloat"};
+const Names kBuiltins = {"radians",
+                         "degrees",
+                         "sin",
+                         "cos",
+                         "tan",
+                         "asin",
+                         "acos",
+                         "atan",
+                         "sinh",
+                         "cosh",
+                         "tanh",
+                         "asinh",
+                         "acosh",
+                         "atanh",
+                         "pow",
+                         "exp",
+                         "log",
+                         "exp2",
+                         "log2",
+                         "sqrt",
+                         "inversesqrt",
+                         "abs",
+                         "sign",
+                         "floor",
+                         "trunc",
+                         "round",
+                         "roundEven",
+                         "ceil",
+                         "fract",
+                         "mod",
+                         "min",
+                         "max",
+                         "clamp",
+                         "mix",
+                         "step",
+                         "smoothstep",
+                         "isnan",
+                         "isinf",
+                         "length",
+                         "distance",
+                         "dot",
+                         "cross",
+                         "normalize",
+                         "faceforward",
+                         "reflect",
+                         "refract",
+                         "lessThan",
+                         "lessThanEqual",
+                         "greaterThan",
+                         "greaterThanEqual",
+                         "equal",
+                         "notEqual",
+                         "any",
+                         "all",
+                         "not",
+                         "transpose",
+                         "determinant",
+                         "inverse",
+                         "matrixCompMult",
+                         "outerProduct",
+                         "floatBitsToUint",
+                         "floatBitsToInt",
+                         "uintBitsToFloat",
+                         "intBitsToFloat"};
 // Of function_calls.glsl, and what they cost in steps.
 const std::map<std::string, int64_t, std::less<>> kCalls = {{"random", 40}, {"noise", 90}, {"fbm", 800},
                                                             {"cells", 700}, {"ramp", 15},  {"srgb", 30},
@@ -127,8 +184,8 @@ Result<std::vector<Token>> tokens_of(const std::string& name, const std::string&
 }
 
 bool is_assignment(std::string_view mark) {
-    static const Names kAssign = {"=",  "+=", "-=", "*=",  "/=",  "%=", "&=",
-                                  "|=", "^=", "++", "--", "<<=", ">>="};
+    static const Names kAssign = {
+        "=", "+=", "-=", "*=", "/=", "%=", "&=", "|=", "^=", "++", "--", "<<=", ">>="};
     return kAssign.count(mark) > 0;
 }
 
@@ -145,21 +202,22 @@ Result<FunctionParameter> parameter_of(const std::string& name, int line, std::s
         words.emplace_back(text.substr(at, end - at));
         at = end;
     }
-    if (words.size() < 4)
-        return at_line(name, line, "a parameter is \"//@ name value min max what it is\"");
+    if (words.size() < 4) return at_line(name, line, "a parameter is \"//@ name value min max what it is\"");
     p.name = words[0];
     for (const auto& [word, value] : {std::pair(1, &p.value), {2, &p.min}, {3, &p.max}}) {
         const std::string& w = words[size_t(word)];
         const auto [end, failed] = std::from_chars(w.data(), w.data() + w.size(), *value);
         if (failed != std::errc() || end != w.data() + w.size() || !(std::abs(*value) <= 1.0e6))
-            return at_line(name, line, "\"{}\" of the parameter {} is no number within ±1,000,000", w, p.name);
+            return at_line(name, line, "\"{}\" of the parameter {} is no number within ±1,000,000", w,
+                           p.name);
     }
     if (!is_name_start(p.name[0]) || !std::all_of(p.name.begin(), p.name.end(), is_name) ||
         kTypes.count(p.name) || kKeywords.count(p.name) || kForbidden.count(p.name) ||
         kBuiltins.count(p.name) || kCalls.count(p.name))
         return at_line(name, line, "\"{}\" is no name for a parameter", p.name);
     if (!(p.min < p.max) || p.value < p.min || p.value > p.max)
-        return at_line(name, line, "the parameter {} is {} in a range of {} … {}", p.name, p.value, p.min, p.max);
+        return at_line(name, line, "the parameter {} is {} in a range of {} … {}", p.name, p.value, p.min,
+                       p.max);
     while (at < text.size() && std::isspace(static_cast<unsigned char>(text[at]))) ++at;
     p.says = text.substr(at);
     while (!p.says.empty() && std::isspace(static_cast<unsigned char>(p.says.back()))) p.says.pop_back();
@@ -260,7 +318,8 @@ class Checker {
         if (kBuiltins.count(name) || kCalls.count(name) || kTypes.count(name) || kKeywords.count(name) ||
             kForbidden.count(name))
             return fail("{} cannot be defined again", name);
-        if (name == "decal" && !signature({"void", "decal", "(", "Place", "", ",", "inout", "Surface", "", ")"}))
+        if (name == "decal" &&
+            !signature({"void", "decal", "(", "Place", "", ",", "inout", "Surface", "", ")"}))
             return fail("decal is \"void decal(Place at, inout Surface s)\"");
         if (name == "relief" && !signature({"float", "relief", "(", "Place", "", ")"}))
             return fail("relief is \"float relief(Place at)\"");
@@ -269,7 +328,8 @@ class Checker {
         at_ += 3;
         while (at_ < tokens_.size() && !is(")")) {
             if ((is("out") || is("inout")) && (is("int", 1) || is("uint", 1)))
-                return fail("a function cannot give back {} through its arguments: return it", tokens_[at_ + 1].text);
+                return fail("a function cannot give back {} through its arguments: return it",
+                            tokens_[at_ + 1].text);
             if (is("[")) return fail("there are no arrays");
             if (is_kind(Token::Kind::name) && kForbidden.count(tokens_[at_].text))
                 return fail("\"{}\" has no place in a decal's function", tokens_[at_].text);
@@ -314,7 +374,8 @@ class Checker {
     [[nodiscard]] static std::optional<int64_t> whole_number(std::string_view text) {
         int64_t value = 0;
         const auto [end, failed] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (failed != std::errc() || end != text.data() + text.size() || std::abs(value) > 1'000'000) return {};
+        if (failed != std::errc() || end != text.data() + text.size() || std::abs(value) > 1'000'000)
+            return {};
         return value;
     }
     // A whole number as written or a constant, with a sign; moves on.
@@ -324,7 +385,8 @@ class Checker {
         std::optional<int64_t> value;
         if (is_kind(Token::Kind::number)) value = whole_number(tokens_[at_].text);
         if (is_kind(Token::Kind::name))
-            if (const auto it = constants_.find(tokens_[at_].text); it != constants_.end()) value = it->second;
+            if (const auto it = constants_.find(tokens_[at_].text); it != constants_.end())
+                value = it->second;
         ++at_;
         if (value && negative) value = -*value;
         return value;
@@ -362,8 +424,7 @@ class Checker {
         if (!is(")") || !is("{", 1)) return refuse();
         ++at_;
         const int64_t here = std::max<int64_t>(0, (*to - *from + (last_too ? 1 : 0) + step - 1) / step);
-        if (here > kMostTurns)
-            return fail_at(begin, "a loop of {} turns, the limit is {}", here, kMostTurns);
+        if (here > kMostTurns) return fail_at(begin, "a loop of {} turns, the limit is {}", here, kMostTurns);
         counters_.push_back(counter);
         LOAM_TRY(block(std::min<int64_t>(turns * std::max<int64_t>(here, 1), kMostFunctionSteps * 2)));
         counters_.pop_back();
@@ -394,7 +455,8 @@ class Checker {
             return fail("\"{}\" has no place in a decal's function", text);
         }
         if (std::find(counters_.begin(), counters_.end(), text) != counters_.end() &&
-            (is_assignment_at(1) || (at_ > 0 && (tokens_[at_ - 1].text == "++" || tokens_[at_ - 1].text == "--"))))
+            (is_assignment_at(1) ||
+             (at_ > 0 && (tokens_[at_ - 1].text == "++" || tokens_[at_ - 1].text == "--"))))
             return fail("{} counts the turns of a loop and cannot be changed in it", text);
         if (!is("(", 1) || kKeywords.count(text) || kTypes.count(text) || kBuiltins.count(text)) return {};
         if (const auto call = kCalls.find(text); call != kCalls.end()) {
@@ -405,7 +467,8 @@ class Checker {
             cost_ = std::min<int64_t>(cost_ + own->second * turns, kMostFunctionSteps * 4);
             return {};
         }
-        return fail("{} cannot be called: it is neither defined above nor one of the functions there are", text);
+        return fail("{} cannot be called: it is neither defined above nor one of the functions there are",
+                    text);
     }
 
     [[nodiscard]] bool is_assignment_at(size_t ahead) const {
@@ -430,8 +493,8 @@ std::string renamed(const DecalFunction& function, size_t number) {
     std::string_view before;
     for (const Token& t : *tokens) {
         out.append(from, t.text.data());
-        if (t.kind == Token::Kind::name && before != "." && !kTypes.count(t.text) && !kKeywords.count(t.text) &&
-            !kBuiltins.count(t.text))
+        if (t.kind == Token::Kind::name && before != "." && !kTypes.count(t.text) &&
+            !kKeywords.count(t.text) && !kBuiltins.count(t.text))
             out += kCalls.count(t.text) ? "fn_" : fmt::format("u{}_", number);
         out += t.text;
         from = t.text.data() + t.text.size();
@@ -440,8 +503,8 @@ std::string renamed(const DecalFunction& function, size_t number) {
     return out.append(from, code.data() + code.size());
 }
 
-// The line of a file where SPIR-V divides signed integers; 0: nowhere. That is undefined by zero, and of the smallest
-// number by -1, and some devices' processors trap.
+// The line of a file where SPIR-V divides signed integers; 0: nowhere. That is undefined by zero, and of the
+// smallest number by -1, and some devices' processors trap.
 int int_division(std::span<const uint32_t> words, const std::string& file) {
     constexpr uint32_t kOpString = 7, kOpLine = 8, kOpSDiv = 135, kOpSRem = 138, kOpSMod = 139;
     uint32_t file_id = 0, line = 0;
@@ -465,7 +528,8 @@ Status check_function_name(const std::string& name) {
     constexpr size_t kLongest = 60;
     const auto plain = [](char c) { return is_name(c) || c == '-'; };
     if (name.empty() || name.size() > kLongest || !std::all_of(name.begin(), name.end(), plain))
-        return error("\"{}\" is no name of a decal's function: 1 to {} letters, digits, _ and -", name, kLongest);
+        return error("\"{}\" is no name of a decal's function: 1 to {} letters, digits, _ and -", name,
+                     kLongest);
     return {};
 }
 
@@ -491,13 +555,14 @@ Status check_parameters(const DecalFunction& function, const std::map<std::strin
                                         [&](const FunctionParameter& p) { return p.name == name; });
         if (known == function.parameters.end()) {
             std::string names;
-            for (const FunctionParameter& p : function.parameters) names += (names.empty() ? "" : ", ") + p.name;
+            for (const FunctionParameter& p : function.parameters)
+                names += (names.empty() ? "" : ", ") + p.name;
             return error("the function {} has no parameter \"{}\" (it has: {})", function.name, name,
                          names.empty() ? "none" : names);
         }
         if (value < known->min || value > known->max)
-            return error("the parameter {} of {} is {}, must be {} … {}", name, function.name, value, known->min,
-                         known->max);
+            return error("the parameter {} of {} is {}, must be {} … {}", name, function.name, value,
+                         known->min, known->max);
     }
     return {};
 }
@@ -514,8 +579,7 @@ std::vector<double> parameter_values(const DecalFunction& function,
 
 glsl::Texts shader_texts(std::span<const DecalFunction* const> functions) {
     glsl::Texts texts;
-    std::string list =
-        "#define LOAM_DECAL_FUNCTIONS\nconst bool kDecalFunctions = true;\n", run;
+    std::string list = "#define LOAM_DECAL_FUNCTIONS\nconst bool kDecalFunctions = true;\n", run;
     for (size_t i = 0; i < functions.size(); ++i) {
         const DecalFunction& f = *functions[i];
         std::string set;
@@ -535,8 +599,9 @@ glsl::Texts shader_texts(std::span<const DecalFunction* const> functions) {
                 "        s.slope += vec2(u{0}_relief(east) - u{0}_relief(west), u{0}_relief(north) - "
                 "u{0}_relief(south)) / at.texel_m;\n",
                 i);
-        run += fmt::format("    if (decal.function == {}u) {{\n{}        u{}_decal(at, s);\n        return;\n    }}\n",
-                           i + 1, set, i);
+        run += fmt::format(
+            "    if (decal.function == {}u) {{\n{}        u{}_decal(at, s);\n        return;\n    }}\n",
+            i + 1, set, i);
     }
     list += "void run_function(PaintDecal decal, fn_Place at, inout fn_Surface s) {\n" + run + "}\n";
     texts["shaders/texture/decal_functions.glsl"] = std::move(list);
@@ -564,9 +629,10 @@ Status compile_function(const DecalFunction& function) {
                                           glsl::Lines::yes);
     if (!words) return error("{}", plain_message(words.message()));
     if (const int line = int_division(*words, file_of(function.name)); line > 0)
-        return at_line(function.name, line,
-                       "dividing int by int, with / or %, may stop the program where it cannot be done: divide "
-                       "float or uint");
+        return at_line(
+            function.name, line,
+            "dividing int by int, with / or %, may stop the program where it cannot be done: divide "
+            "float or uint");
     return {};
 }
 

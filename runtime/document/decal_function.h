@@ -6,7 +6,9 @@
 //     void decal(Place at, inout Surface s)     what the decal shows there
 //     float relief(Place at)                    optional: heights in metres, of which normals are made
 //
-// and lines "//@ name value min max what it is" for at most eight parameters, numbers that each decal may set.
+// and lines "//@ name value min max what it is" for at most eight parameters, numbers that each decal may
+// set.
+//
 // What a text may do is little, so that a project of somebody else's can be opened: it calls its own
 // functions, arithmetic and those of shaders/texture/function_calls.glsl; it sees no image, no buffer, no
 // other shader's names; every loop has a bound written down, nothing calls itself, and the steps of the
@@ -57,8 +59,9 @@ struct DecalFunction {
 [[nodiscard]] std::vector<double> parameter_values(const DecalFunction& function,
                                                    const std::map<std::string, double>& parameters);
 
-// For the shader compiler: the texts that put these functions into shaders that draw decals; PaintDecal::function
-// is the place in the list, from 1. Names of a text are put out of the way of everybody else's.
+// For the shader compiler: the texts that put these functions into shaders that draw decals;
+// PaintDecal::function is the place in the list, from 1. Names of a text are put out of the way of everybody
+// else's.
 [[nodiscard]] glsl::Texts shader_texts(std::span<const DecalFunction* const> functions);
 
 // Compiles it as it is drawn. An error begins with "decals/NAME.glsl:LINE: ".

@@ -100,7 +100,9 @@ struct Document::Impl {
     Status compute(const RemoveOperatorCommand& command, Change& change);
     Status compute(const TransitionCommand& command, Change& change);
     Status compute(const TimeCommand&, Change&) { return error("the time is not a command of the journal"); }
-    Status compute(const FunctionCommand&, Change&) { return error("a function is not a command of the journal"); }
+    Status compute(const FunctionCommand&, Change&) {
+        return error("a function is not a command of the journal");
+    }
     Status compute(const UndoCommand&, Change&) { return error("undo is not a command of the journal"); }
     Status compute(const RedoCommand&, Change&) { return error("redo is not a command of the journal"); }
     void change_operator(uint64_t id, std::optional<Operator> op, Change& change);

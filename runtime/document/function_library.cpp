@@ -67,9 +67,16 @@ Result<std::string> FunctionLibrary::text(const std::string& name) const {
 
 Result<std::shared_ptr<const DecalFunction>> FunctionLibrary::find(const std::string& name) {
     if (auto known = shown(name)) return known;
+    const auto time = time_of(file_of(name));
+    {
+        const std::lock_guard lock(mutex_);
+        const auto known = entries_.find(name);
+        // A text at fault is not compiled again and again.
+        if (known != entries_.end() && !known->second.error.empty() && known->second.time == time)
+            return Error{known->second.error};
+    }
     auto found = text(name);
     if (!found.ok()) return found.error();
-    const auto time = time_of(file_of(name));
     auto function = read_function(name, *found);
     const Status compiled = function.ok() ? compile_function(*function) : function.error();
     const std::lock_guard lock(mutex_);
@@ -108,7 +115,8 @@ Status FunctionLibrary::keep(const std::string& name) {
     const auto text = shipped(name);
     if (!text) return {};
     std::filesystem::create_directories(project_ / kFolder, failure);
-    if (failure) return error("cannot make the folder {}: {}", (project_ / kFolder).string(), failure.message());
+    if (failure)
+        return error("cannot make the folder {}: {}", (project_ / kFolder).string(), failure.message());
     LOAM_TRY(replace_file(file_of(name), {reinterpret_cast<const uint8_t*>(text->data()), text->size()}));
     const std::lock_guard lock(mutex_);
     if (const auto it = entries_.find(name); it != entries_.end()) it->second.time = time_of(file_of(name));
@@ -121,7 +129,8 @@ Status FunctionLibrary::set(const std::string& name, std::string text) {
     LOAM_TRY(compile_function(*function));
     std::error_code failure;
     std::filesystem::create_directories(project_ / kFolder, failure);
-    if (failure) return error("cannot make the folder {}: {}", (project_ / kFolder).string(), failure.message());
+    if (failure)
+        return error("cannot make the folder {}: {}", (project_ / kFolder).string(), failure.message());
     LOAM_TRY(replace_file(file_of(name), {reinterpret_cast<const uint8_t*>(text.data()), text.size()}));
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_[name];
@@ -190,8 +199,9 @@ void FunctionLibrary::count_failed(const std::string& name, uint64_t texels) {
         entry.failed_texels += texels;
     }
     if (first)
-        log(LogLevel::warning, "the decals' function {} gave no number (NaN or infinite) at {} texels; they stay as they are", name,
-            texels);
+        log(LogLevel::warning,
+            "the decals' function {} gave no number (NaN or infinite) at {} texels; they stay as they are",
+            name, texels);
 }
 
 }  // namespace loam

@@ -1,5 +1,5 @@
-// The functions of decals in a project's folder, decals/NAME.glsl, and those that come with Loam, which are copied
-// there when a decal first shows them: a project does not change with the program.
+// The functions of decals in a project's folder, decals/NAME.glsl, and those that come with Loam, which are
+// copied there when a decal first shows them: a project does not change with the program.
 #pragma once
 
 #include <filesystem>
@@ -14,13 +14,14 @@
 
 namespace loam {
 
-// Of each name the newest version that keeps to the rules is shown; while its text is being changed into one that
-// does not, that stays. Any thread may call.
+// Of each name the newest version that keeps to the rules is shown; while its text is being changed into one
+// that does not, that stays. Any thread may call.
 class FunctionLibrary {
   public:
     explicit FunctionLibrary(std::filesystem::path project) : project_(std::move(project)) {}
     [[nodiscard]] std::filesystem::path file_of(const std::string& name) const;
-    [[nodiscard]] std::vector<std::string> names() const;  // the project's and those that come with Loam, sorted
+    [[nodiscard]] std::vector<std::string> names()
+        const;  // the project's and those that come with Loam, sorted
     // As it is in the project, else as it comes with Loam, whether it compiles or not.
     [[nodiscard]] Result<std::string> text(const std::string& name) const;
     // The version shown, read when first asked for. The error names the functions there are.
@@ -46,7 +47,7 @@ class FunctionLibrary {
   private:
     struct Entry {
         std::shared_ptr<const DecalFunction> shown;
-        std::string seen;   // the file's text as it was last read
+        std::string seen;  // the file's text as it was last read
         std::filesystem::file_time_type time{};
         std::string error;
         uint64_t failed_texels = 0;

@@ -36,8 +36,9 @@ struct DecalMaterial {
     double rough = 0;   // how far noise eats into the edge, 0 … 1
     uint32_t seed = 0;
     DecalChannels channels;
-    std::string function;                      // that makes it (decal_function.h); empty: none
-    std::map<std::string, double> parameters;  // of the function; those that are not here are as its text has them
+    std::string function;  // that makes it (decal_function.h); empty: none
+    // Of the function; those that are not here are as its text has them.
+    std::map<std::string, double> parameters;
     bool operator==(const DecalMaterial&) const = default;
 };
 

@@ -370,7 +370,8 @@ CommandBody read_body(const std::string& name, Fields& fields) {
     if (name == "redo") return RedoCommand{};
     refuse(
         "unknown command \"{}\" (known: sculpt, paint, fill, crater, footprints, decal, spline, volume, "
-        "stamp, cutout, slide, flood, event, edit, reorder, operator, remove, transition, time, function, undo, redo)",
+        "stamp, cutout, slide, flood, event, edit, reorder, operator, remove, transition, time, function, "
+        "undo, redo)",
         name);
 }
 

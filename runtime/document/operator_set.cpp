@@ -176,10 +176,14 @@ OperatorSet::Cost OperatorSet::cost_of(uint64_t id) const {
 }
 
 std::vector<Operator> OperatorSet::sorted() const {
+    std::vector<const Operator*> order;
+    order.reserve(by_id_.size());
+    for (const auto& [id, held] : by_id_) order.push_back(&held->op);
+    std::sort(order.begin(), order.end(),
+              [](const Operator* a, const Operator* b) { return evaluated_before(*a, *b); });
     std::vector<Operator> all;
-    all.reserve(by_id_.size());
-    for (const auto& [id, held] : by_id_) all.push_back(held->op);
-    std::sort(all.begin(), all.end(), evaluated_before);
+    all.reserve(order.size());
+    for (const Operator* op : order) all.push_back(*op);
     return all;
 }
 

@@ -109,7 +109,7 @@ struct Renderer::Impl {
     std::vector<gpu::PassTime> pass_times;      // of the newest finished frame
     gpu::UploadSlice decals, paints, segments;  // of direct shading, this frame's
     bool has_decals = false, has_paints = false;
-    FunctionList functions;  // that direct shading has shown
+    FunctionList functions;           // that direct shading has shown
     gpu::UploadSlice facts, squares;  // of debug views, this frame's
     shared::FrameUniforms last_uniforms{};  // for resolve_again
 

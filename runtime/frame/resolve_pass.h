@@ -85,7 +85,7 @@ class ResolvePass {
     gpu::Sampler anisotropic_;  // of the pages; made when first used
     gpu::Pipeline sky_;
     std::map<Variant, gpu::Pipeline> pipelines_;
-    FunctionList functions_;    // of direct shading's pipelines
+    FunctionList functions_;               // of direct shading's pipelines
     uint32_t layout_ = 0, placement_ = 0;  // PageTextures' that the pipelines are made for
     FilterTiles tiles_;
 };

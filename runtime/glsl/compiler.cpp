@@ -86,8 +86,8 @@ std::optional<std::string> embedded_text(const std::string& name) {
     constexpr std::string_view kFolder = "shaders/";
     if (!name.starts_with(kFolder)) return std::nullopt;
     const auto sources = shader_sources();
-    const auto it = std::ranges::find(sources, std::string_view(name).substr(kFolder.size()),
-                                      &ShaderSource::name);
+    const auto it =
+        std::ranges::find(sources, std::string_view(name).substr(kFolder.size()), &ShaderSource::name);
     return it == sources.end() ? std::nullopt : std::optional(std::string(it->text));
 }
 

@@ -1,5 +1,5 @@
-// GLSL to SPIR-V with glslang, without a device. Shaders may be made while running, of one that there is and texts that
-// stand in for files that it includes.
+// GLSL to SPIR-V with glslang, without a device. Shaders may be made while running, of one that there is and
+// texts that stand in for files that it includes.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +15,12 @@
 
 namespace loam::glsl {
 
-// The text of a file by its name from the folder above shaders/ ("shaders/texture/page_io.h"); none: there is no
-// such file.
+// The text of a file by its name from the folder above shaders/ ("shaders/texture/page_io.h"); none: there is
+// no such file.
 using Reader = std::function<std::optional<std::string>(const std::string& name)>;
 [[nodiscard]] Reader reader_of_files(std::filesystem::path root);
-[[nodiscard]] std::optional<std::string> embedded_text(const std::string& name);  // as the build embedded them
+[[nodiscard]] std::optional<std::string> embedded_text(
+    const std::string& name);  // as the build embedded them
 
 // By the name that an #include gives: what stands there in place of a file.
 using Texts = std::map<std::string, std::string, std::less<>>;

@@ -1,5 +1,5 @@
-// The texts of what shaders are made of while running, which the build embedded (shaders/CMakeLists.txt), sorted by
-// name.
+// The texts of what shaders are made of while running, which the build embedded (shaders/CMakeLists.txt),
+// sorted by name.
 #pragma once
 
 #include <span>

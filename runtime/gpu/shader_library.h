@@ -23,8 +23,8 @@ class ShaderLibrary {
     // The SPIR-V of a shader ("geometry/terrain.vert"): reloaded code if there is any, else what was embedded.
     [[nodiscard]] Result<std::span<const uint32_t>> spirv(std::string_view name) const;
 
-    // Makes, or makes again, the shader `name` ("texture/paint.frag:moss"): watched as its base is. After an error the
-    // one before stays. The caller reloads pipelines.
+    // Makes, or makes again, the shader `name` ("texture/paint.frag:moss"): watched as its base is. After an
+    // error the one before stays. The caller reloads pipelines.
     Status make(const std::string& name, const std::string& base, glsl::Texts texts);
 
     // Watching: call `poll` now and then (the editor: twice a second). Returns names whose code changed, and keeps the

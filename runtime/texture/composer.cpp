@@ -496,7 +496,8 @@ Status Composer::cmd_decals(gpu::FrameRing& ring, gpu::Commands& commands, std::
             used = glm::max(used, placed.rect.scratch_min + placed.rect.rect_size);
         }
     }
-    return decals_->cmd_record(ring, commands, document_, list, layers_, scratch_, {uint32_t(used.x), uint32_t(used.y)});
+    return decals_->cmd_record(ring, commands, document_, list, layers_, scratch_,
+                               {uint32_t(used.x), uint32_t(used.y)});
 }
 
 void Composer::cmd_encode_blocks(gpu::Commands& commands, const Work& work) {

@@ -67,18 +67,17 @@ struct DecalPasses::Uploads {
 
 gpu::GraphicsDesc DecalPasses::paint_desc(DecalKind kind, size_t part, const LayerSet& layers) const {
     const size_t targets = size_t(textures_.scratch_layers);
-    gpu::GraphicsDesc desc{.name = kKindNames[size_t(kind)],
-                           .vertex_shader = "texture/paint.vert",
-                           .fragment_shader = "texture/paint.frag",
-                           .bindings = {gpu::storage_buffer(0), gpu::storage_buffer(1), gpu::storage_buffer(2),
-                                        gpu::sampled_image(3), gpu::sampled_image(4), gpu::sampled_image(5)},
-                           .constants = {{0, paint_kind(kind)},
-                                         {1, uint32_t(part)},
-                                         {2, layers.has_metal ? 1u : 0u}},
-                           .color_formats = std::vector(targets, VK_FORMAT_R8G8B8A8_UNORM),
-                           .blends = std::vector(targets, gpu::Blend::alpha),
-                           .write_masks = {kPartMasks[part], kPartMasks[part] + 3},
-                           .stencil = {}};
+    gpu::GraphicsDesc desc{
+        .name = kKindNames[size_t(kind)],
+        .vertex_shader = "texture/paint.vert",
+        .fragment_shader = "texture/paint.frag",
+        .bindings = {gpu::storage_buffer(0), gpu::storage_buffer(1), gpu::storage_buffer(2),
+                     gpu::sampled_image(3), gpu::sampled_image(4), gpu::sampled_image(5)},
+        .constants = {{0, paint_kind(kind)}, {1, uint32_t(part)}, {2, layers.has_metal ? 1u : 0u}},
+        .color_formats = std::vector(targets, VK_FORMAT_R8G8B8A8_UNORM),
+        .blends = std::vector(targets, gpu::Blend::alpha),
+        .write_masks = {kPartMasks[part], kPartMasks[part] + 3},
+        .stencil = {}};
     desc.write_masks.resize(targets, 0);
     return desc;
 }
@@ -113,7 +112,8 @@ const gpu::Pipeline* DecalPasses::function_pipeline(const Document& document, co
         made.revision = function.revision;
         made.fails = false;
         const DecalFunction* only = &function;
-        const Status compiled = device_->shaders().make(shader, "texture/paint.frag", shader_texts({&only, 1}));
+        const Status compiled =
+            device_->shaders().make(shader, "texture/paint.frag", shader_texts({&only, 1}));
         if (!compiled.ok()) fail(plain_message(compiled.message()));
         made.pipelines = {};
     }
@@ -177,18 +177,20 @@ void DecalPasses::read_counts(gpu::FrameRing& ring, gpu::Commands& commands, con
     std::vector<std::string> names = counted_draws(list, kParts);
     if (names.empty()) return;
     const uint64_t bytes_read = names.size() * kCountStride;
-    ring.read_back(commands, counts_, 0, bytes_read,
-                   [names = std::move(names), &functions = document.functions()](std::span<const std::byte> bytes) {
-                       for (size_t i = 0; i < names.size(); ++i) {
-                           uint32_t texels = 0;
-                           std::memcpy(&texels, bytes.data() + i * kCountStride, sizeof texels);
-                           if (texels > 0) functions.count_failed(names[i], texels);
-                       }
-                   });
+    ring.read_back(
+        commands, counts_, 0, bytes_read,
+        [names = std::move(names), &functions = document.functions()](std::span<const std::byte> bytes) {
+            for (size_t i = 0; i < names.size(); ++i) {
+                uint32_t texels = 0;
+                std::memcpy(&texels, bytes.data() + i * kCountStride, sizeof texels);
+                if (texels > 0) functions.count_failed(names[i], texels);
+            }
+        });
 }
 
 Status DecalPasses::cmd_record(gpu::FrameRing& ring, gpu::Commands& commands, const Document& document,
-                               const DecalList& list, LayerSet& layers, gpu::Image& scratch, VkExtent2D used) {
+                               const DecalList& list, LayerSet& layers, gpu::Image& scratch,
+                               VkExtent2D used) {
     if (list.marks.empty() && list.paints.empty()) return {};
     const Uploads up{upload(ring, list.marks), upload(ring, list.paints), upload(ring, list.segments),
                      upload(ring, list.heights_m)};
@@ -229,7 +231,8 @@ Status DecalPasses::cmd_record(gpu::FrameRing& ring, gpu::Commands& commands, co
                 if (run.function > 0) {
                     all.erase(all.begin() + std::ptrdiff_t(without_count), all.end());
                     all.emplace_back(6, counts_, kCountStride * counted++, sizeof(uint32_t));
-                    drawn = function_pipeline(document, *list.functions[run.function - 1], run.kind, part, layers);
+                    drawn = function_pipeline(document, *list.functions[run.function - 1], run.kind, part,
+                                              layers);
                     if (!drawn) continue;
                 } else {
                     auto made = pipeline(run.kind, part, layers);

@@ -268,14 +268,12 @@ struct PictureDecals {
     void operator()(const TerrainDecal& decal, const WorldRect& bounds) const {
         if (shown(size_m(decal), bounds))
             paint(kPaintTerrain, decal.material,
-                  paint_of(document, layers, layers.direct_tier(), decal, view.camera_m),
-                  bounds);
+                  paint_of(document, layers, layers.direct_tier(), decal, view.camera_m), bounds);
     }
     void operator()(const VolumeDecal& volume, const WorldRect& bounds) const {
         if (shown(size_m(volume), bounds))
             paint(kPaintVolume, volume.material,
-                  paint_of(document, layers, layers.direct_tier(), volume, view.camera_m),
-                  bounds);
+                  paint_of(document, layers, layers.direct_tier(), volume, view.camera_m), bounds);
     }
     void operator()(const Stamp&) const {}
     void operator()(const Cutout&) const {}
@@ -376,8 +374,9 @@ DirectDecals direct_decals(const Document& document, const LayerSet& layers, con
     });
     found.erase(std::unique(found.begin(), found.end()), found.end());
     DirectDecals out;
-    const PictureDecals decals{document, layers, view, out, functions,
-                               kFootprintMargin / view.pixels_per_radian * std::exp2(view.footprint_bias)};
+    const PictureDecals decals{
+        document, layers,    view,
+        out,      functions, kFootprintMargin / view.pixels_per_radian * std::exp2(view.footprint_bias)};
     for (const Operator* op : found) visit_decal(decals, *op);
     return out;
 }

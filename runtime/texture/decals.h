@@ -69,8 +69,8 @@ struct DirectDecals {
     std::vector<shared::PaintSegment> segments;
 };
 
-// The decals over the ground in view that are not too small to be seen. Takes the document's ReadLock. `functions`:
-// that pictures have shown so far, in the order of the shader.
+// The decals over the ground in view that are not too small to be seen. Takes the document's ReadLock.
+// `functions`: that pictures have shown so far, in the order of the shader.
 [[nodiscard]] DirectDecals direct_decals(const Document& document, const LayerSet& layers,
                                          const DirectDecalView& view, FunctionList& functions);
 

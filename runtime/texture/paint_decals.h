@@ -27,13 +27,14 @@ enum class LayerTier : uint8_t;
 
 // The functions that a list of decals shows, each once.
 using FunctionList = std::vector<std::shared_ptr<const DecalFunction>>;
-// The place of a material's function in the list, counted from 1 and added if need be; 0: it has none. Nothing: the
-// decal cannot be shown.
-[[nodiscard]] std::optional<uint32_t> place_of_function(const Document& document, const DecalMaterial& material,
+// The place of a material's function in the list, counted from 1 and added if need be; 0: it has none.
+// Nothing: the decal cannot be shown.
+[[nodiscard]] std::optional<uint32_t> place_of_function(const Document& document,
+                                                        const DecalMaterial& material,
                                                         FunctionList& functions);
 
-// But for its function's place. A decal that lies on the ground at `origin_m`'s frame: the segments of a spline's piece are appended to
-// `segments`.
+// But for its function's place. A decal that lies on the ground at `origin_m`'s frame: the segments of a
+// spline's piece are appended to `segments`.
 [[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, LayerTier tier,
                                           const TerrainDecal& decal, glm::dvec3 origin_m);
 [[nodiscard]] shared::PaintDecal paint_of(const Document& document, const LayerSet& layers, LayerTier tier,

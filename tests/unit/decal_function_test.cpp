@@ -1,5 +1,5 @@
-// Functions of decals: what a text may say, the sentence for what it may not, and that the version shown stays until
-// the next one compiles.
+// Functions of decals: what a text may say, the sentence for what it may not, and that the version shown
+// stays until the next one compiles.
 #include <fstream>
 #include <iterator>
 
@@ -53,7 +53,8 @@ TEST(DecalFunction, TheShippedOnesCompileAndSayWhatTheyAre) {
         EXPECT_TRUE(compiled.ok()) << compiled.message();
         EXPECT_FALSE(function->says.empty()) << name;
         EXPECT_GE(function->parameters.size(), 3u) << name;
-        for (const FunctionParameter& p : function->parameters) EXPECT_FALSE(p.says.empty()) << name << p.name;
+        for (const FunctionParameter& p : function->parameters)
+            EXPECT_FALSE(p.says.empty()) << name << p.name;
     }
 }
 
@@ -62,7 +63,8 @@ TEST(DecalFunction, AllTogetherMakeOneShader) {
     for (const auto& [name, text] : shipped_functions()) functions.push_back(take(read_function(name, text)));
     std::vector<const DecalFunction*> list;
     for (const DecalFunction& f : functions) list.push_back(&f);
-    const auto words = glsl::compile_with("frame/resolve_direct.frag", shader_texts(list), glsl::embedded_text);
+    const auto words =
+        glsl::compile_with("frame/resolve_direct.frag", shader_texts(list), glsl::embedded_text);
     EXPECT_TRUE(words.ok()) << words.message();
     // The same names in two texts, and one that the shader has itself.
     const std::string clash =
@@ -81,7 +83,8 @@ TEST(DecalFunction, WhatItMayNotDoIsSaidAtItsLine) {
          "decals/f.glsl:2: relief is \"float relief(Place at)\""},
         {with_body("  s.colour = vec3(x);"), "decals/f.glsl:2: 'x' : undeclared identifier"},
         {with_body("\n\n  s.gloss = 1.0"), "decals/f.glsl:5: "},
-        {with_body("while (true) {}"), "decals/f.glsl:2: while has no bound: a loop is \"for (int i = 0; i < 8; ++i) { … }\""},
+        {with_body("while (true) {}"),
+         "decals/f.glsl:2: while has no bound: a loop is \"for (int i = 0; i < 8; ++i) { … }\""},
         {with_body("for (int i = 0; i < 9; ++i) { i -= 1; }"),
          "decals/f.glsl:2: i counts the turns of a loop and cannot be changed in it"},
         {with_body("for (int i = 0; i < 9; ++i) { ++i; }"), "decals/f.glsl:2: i counts the turns"},
@@ -90,12 +93,15 @@ TEST(DecalFunction, WhatItMayNotDoIsSaidAtItsLine) {
         {with_body("for (float i = 0.0; i < 9.0; ++i) { }"), "decals/f.glsl:2: a loop is \"for ("},
         {with_body("for (;;) { }"), "decals/f.glsl:2: a loop is \"for ("},
         {with_body("if (true) for (int i = 0; i < 9; ++i) { }"), "accepted"},
-        {with_body("for (int i = 0; i < 257; ++i) { }"), "decals/f.glsl:2: a loop of 257 turns, the limit is 256"},
+        {with_body("for (int i = 0; i < 257; ++i) { }"),
+         "decals/f.glsl:2: a loop of 257 turns, the limit is 256"},
         {with_body("for (int i = 0; i < 200; ++i) { for (int j = 0; j < 200; ++j) { s.gloss += 0.1; } }"),
-         "decals/f.glsl:1: it may take 240000 steps at a place, the limit is 60000: fewer turns of its loops"},
+         "decals/f.glsl:1: it may take 240000 steps at a place, the limit is 60000: fewer turns of its "
+         "loops"},
         {"float f(float x) { return f(x); }\n" + with_body(""), "decals/f.glsl:1: f cannot be called"},
         {"float f(float x);\n" + with_body(""), "decals/f.glsl:1: f has no body"},
-        {"void decal(Place at, inout Surface s) { f(); }\nvoid f() {}", "decals/f.glsl:1: f cannot be called"},
+        {"void decal(Place at, inout Surface s) { f(); }\nvoid f() {}",
+         "decals/f.glsl:1: f cannot be called"},
         {with_body("s.colour = texture(layer_albedo, vec3(0)).rgb;"),
          "decals/f.glsl:2: \"texture\" has no place in a decal's function"},
         {with_body("s.gloss = heights[3];"), "decals/f.glsl:2: 'heights' : undeclared identifier"},
@@ -117,8 +123,10 @@ TEST(DecalFunction, WhatItMayNotDoIsSaidAtItsLine) {
         {"float b = 1.0;\n" + with_body(""), "decals/f.glsl:1: outside of functions there are only"},
         {"uniform float b;\n" + with_body(""), "decals/f.glsl:1: outside of functions there are only"},
         {"struct A { float b; };\n" + with_body(""), "decals/f.glsl:1: outside of functions there are only"},
-        {"void f(out int i) { i = 0; }\n" + with_body(""), "decals/f.glsl:1: a function cannot give back int"},
-        {"float noise(float x) { return x; }\n" + with_body(""), "decals/f.glsl:1: noise cannot be defined again"},
+        {"void f(out int i) { i = 0; }\n" + with_body(""),
+         "decals/f.glsl:1: a function cannot give back int"},
+        {"float noise(float x) { return x; }\n" + with_body(""),
+         "decals/f.glsl:1: noise cannot be defined again"},
         {with_body("if (true) {"), "decals/f.glsl:1: this \"{\" is never closed"},
         {with_body("s.gloss = \"a\";"), "decals/f.glsl:2: there is no place for this character here"},
         {"/* void decal", "decals/f.glsl:1: there is no \"void decal"},
@@ -134,9 +142,11 @@ TEST(DecalFunction, WhatItMayNotDoIsSaidAtItsLine) {
     std::string nine;
     for (char c = 'a'; c < 'j'; ++c) nine += std::string("//@ ") + c + " 0 0 1\n";
     EXPECT_EQ(refusal(nine), "decals/f.glsl:9: the limit is 8 parameters");
-    EXPECT_TRUE(refusal(std::string(70'000, ' ')).find("70000 bytes, the limit is 65536") != std::string::npos);
+    EXPECT_TRUE(refusal(std::string(70'000, ' ')).find("70000 bytes, the limit is 65536") !=
+                std::string::npos);
     EXPECT_TRUE(refusal(std::string("\0\x01\xff", 3)).starts_with("decals/f.glsl:1: "));
-    for (const char* name : {"", "../x", "a b", ".x", "a/b"}) EXPECT_FALSE(check_function_name(name).ok()) << name;
+    for (const char* name : {"", "../x", "a b", ".x", "a/b"})
+        EXPECT_FALSE(check_function_name(name).ok()) << name;
 }
 
 TEST(DecalFunction, WhatItMayDoCompiles) {
@@ -144,22 +154,29 @@ TEST(DecalFunction, WhatItMayDoCompiles) {
          {"const int N = 4; for (int i = -2; i <= N - N; ++i) { }",  // a bound that is not a number
           "uint a = uint(at.p.x) / 3u % 7u; s.gloss = float(a);",
           "switch (int(at.p.x)) { case 0: s.gloss = 1.0; break; default: break; }",
-          "for (int i = 0; i < 4; i += 2) { for (int j = 3; j <= 5; j++) { if (j == 4) continue; s.gloss += 0.01; } }",
+          "for (int i = 0; i < 4; i += 2) { for (int j = 3; j <= 5; j++) { if (j == 4) continue; s.gloss += "
+          "0.01; } }",
           "mat2 turn = mat2(0.8, 0.6, -0.6, 0.8); s.slope = turn * s.slope; s.colour.rb *= turn[0].x;",
-          "s.cover = cells(at.p, at.seed).y * fbm(at.p, at.seed, 4) * random(at.p, at.seed) * detail(0.1, at);"}) {
+          "s.cover = cells(at.p, at.seed).y * fbm(at.p, at.seed, 4) * random(at.p, at.seed) * detail(0.1, "
+          "at);"}) {
         const bool bad = std::string(body).starts_with("const int N");
         EXPECT_EQ(check(with_body(body)).ok(), !bad) << body << refusal(with_body(body));
     }
-    EXPECT_EQ(refusal("const int N = 4;\n" + with_body("for (int i = 0; i < N; ++i) { s.gloss += 0.1; }")), "accepted");
-    EXPECT_EQ(refusal("//@ a 1 0 2 it\n// \"quoted\" # and //@ inside\n" + with_body("s.gloss = a; /* # */")), "accepted");
+    EXPECT_EQ(refusal("const int N = 4;\n" + with_body("for (int i = 0; i < N; ++i) { s.gloss += 0.1; }")),
+              "accepted");
+    EXPECT_EQ(refusal("//@ a 1 0 2 it\n// \"quoted\" # and //@ inside\n" + with_body("s.gloss = a; /* # */")),
+              "accepted");
 }
 
 TEST(DecalFunction, ParametersAreCheckedAndHaveTheTextsValues) {
-    const auto f = take(read_function("f", "//@ a 0.5 0 1 it\n//@ b -3 -5 5 that\n" + with_body("s.gloss = a * b;")));
+    const auto f =
+        take(read_function("f", "//@ a 0.5 0 1 it\n//@ b -3 -5 5 that\n" + with_body("s.gloss = a * b;")));
     EXPECT_EQ(parameter_values(f, {}), (std::vector<double>{0.5, -3}));
     EXPECT_EQ(parameter_values(f, {{"b", 4}, {"gone", 1}}), (std::vector<double>{0.5, 4}));
-    EXPECT_EQ(parameter_values(f, {{"b", 40}}), (std::vector<double>{0.5, 5})) << "the range was another when it was set";
-    EXPECT_EQ(check_parameters(f, {{"c", 1}}).message(), "the function f has no parameter \"c\" (it has: a, b)");
+    EXPECT_EQ(parameter_values(f, {{"b", 40}}), (std::vector<double>{0.5, 5}))
+        << "the range was another when it was set";
+    EXPECT_EQ(check_parameters(f, {{"c", 1}}).message(),
+              "the function f has no parameter \"c\" (it has: a, b)");
     EXPECT_EQ(check_parameters(f, {{"a", 3}}).message(), "the parameter a of f is 3, must be 0 … 1");
 }
 
@@ -180,7 +197,8 @@ TEST(DecalFunction, TheVersionBeforeStaysUntilTheNextCompiles) {
     save(library.file_of("mine"), with_body("s.gloss = nothing;"));
     EXPECT_TRUE(library.poll().empty());
     EXPECT_EQ(library.shown("mine"), shown);
-    EXPECT_TRUE(library.errors().at("mine").starts_with("decals/mine.glsl:2: 'nothing'")) << library.errors().at("mine");
+    EXPECT_TRUE(library.errors().at("mine").starts_with("decals/mine.glsl:2: 'nothing'"))
+        << library.errors().at("mine");
     EXPECT_TRUE(library.poll().empty());
 
     save(library.file_of("mine"), second);
@@ -227,16 +245,20 @@ TEST(DecalFunction, ADocumentKeepsItsOwnCopyAndDirtIsWhereItShows) {
     with.material.parameters = {{"sheen", 0.3}};
     EXPECT_EQ(document->apply({EditOperatorCommand{3, with, {}}}).message(),
               "the function oil has no parameter \"sheen\" (it has: none)");
-    EXPECT_NE(document->apply({AddOperatorCommand{decal(9, "none such"), {}}}).message().find("is no name of"),
-              std::string::npos);
-    EXPECT_NE(document->apply({AddOperatorCommand{decal(9, "nothing"), {}}}).message().find("unknown function \"nothing\" (known: cracks, "),
+    EXPECT_NE(
+        document->apply({AddOperatorCommand{decal(9, "none such"), {}}}).message().find("is no name of"),
+        std::string::npos);
+    EXPECT_NE(document->apply({AddOperatorCommand{decal(9, "nothing"), {}}})
+                  .message()
+                  .find("unknown function \"nothing\" (known: cracks, "),
               std::string::npos);
 
     // Another program breaks a text and the project is opened: it opens, and verify says where.
     const std::filesystem::path file = document->functions().file_of("moss");
     document.reset();
-    EXPECT_EQ(take(Document::verify(folder.path() / "p")),
-              (std::vector<std::string>{"operator 3: the function oil has no parameter \"sheen\" (it has: none)"}));
+    EXPECT_EQ(
+        take(Document::verify(folder.path() / "p")),
+        (std::vector<std::string>{"operator 3: the function oil has no parameter \"sheen\" (it has: none)"}));
     save(file, with_body("\n\n  s.gloss = gone;"));
     const auto faults = take(Document::verify(folder.path() / "p"));
     ASSERT_EQ(faults.size(), 2u);

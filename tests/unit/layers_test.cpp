@@ -14,9 +14,19 @@ namespace fs = std::filesystem;
 namespace {
 
 // Bottom up: a folder may include itself and the folders before it.
-const std::vector<std::string> kOrder = {"runtime/base",    "runtime/glsl",     "runtime/gpu",     "runtime/store",   "runtime/document",
-                                         "runtime/maps",    "runtime/texture",  "runtime/geometry", "runtime/scene",
-                                         "runtime/frame",   "ui",               "editor",           "tests"};
+const std::vector<std::string> kOrder = {"runtime/base",
+                                         "runtime/glsl",
+                                         "runtime/gpu",
+                                         "runtime/store",
+                                         "runtime/document",
+                                         "runtime/maps",
+                                         "runtime/texture",
+                                         "runtime/geometry",
+                                         "runtime/scene",
+                                         "runtime/frame",
+                                         "ui",
+                                         "editor",
+                                         "tests"};
 
 int rank_of(const std::string& path) {
     for (size_t i = 0; i < kOrder.size(); ++i)
@@ -31,7 +41,8 @@ std::string objection(const std::string& file, const std::string& included) {
     if (to < 0) return "is not a folder of the table";
     if (to > from) return "is above it";
     // The interface knows nothing of terrain; the document and store nothing of the device.
-    if (file.rfind("ui/", 0) == 0 && to > 2 && included.rfind("ui/", 0) != 0) return "is terrain, and ui knows nothing of it";
+    if (file.rfind("ui/", 0) == 0 && to > 2 && included.rfind("ui/", 0) != 0)
+        return "is terrain, and ui knows nothing of it";
     if ((from == 3 || from == 4) && to == 2) return "is the device, which store and document do not need";
     return {};
 }

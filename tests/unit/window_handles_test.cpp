@@ -86,14 +86,16 @@ TEST(Handles, GoWhereTheyAreTakenAndTheDocumentTakesWhatComesOfIt) {
 TEST(Handles, BoxesInSpaceTurnAroundTheUprightAndGrow) {
     for (const glm::dvec3& direction : {glm::dvec3(0, 0, -1), glm::dvec3(0, 0, 2), glm::dvec3(0.3, -0.4, -1),
                                         glm::dvec3(1, 0.2, -0.4), glm::dvec3(1e-8, 0, -1)}) {
-        VolumeDecal volume{.center_m = {50, 60, 10}, .half_m = {3, -2, 4}, .direction = direction, .roll_rad = 0.7};
+        VolumeDecal volume{
+            .center_m = {50, 60, 10}, .half_m = {3, -2, 4}, .direction = direction, .roll_rad = 0.7};
         std::vector<Handle> handles = handles_of(volume);
         ASSERT_EQ(handles.size(), 3u);
         for (const glm::dvec2& away : {glm::dvec2(9, 0), glm::dvec2(-5, -7), glm::dvec2(0.1, -4)}) {
             const glm::dvec2 to = glm::dvec2(50, 60) + away;
             const auto turned = std::get<VolumeDecal>(dragged(volume, handles[1], {to, 0}, 0));
             EXPECT_LT(glm::length(handles_of(turned)[1].at_m - to), 1e-6);
-            EXPECT_NEAR(glm::normalize(turned.direction).z, glm::normalize(direction).z, 1e-12) << "as steep as before";
+            EXPECT_NEAR(glm::normalize(turned.direction).z, glm::normalize(direction).z, 1e-12)
+                << "as steep as before";
             EXPECT_EQ(turned.half_m.x, 3);
             EXPECT_LT(turned.half_m.y, 0) << "mirrored as before";
             EXPECT_EQ(turned.center_m, volume.center_m);
