@@ -143,13 +143,16 @@ Handles handles(const VolumeDecal& v) {
 }
 Handles handles(const Cutout& c) {
     if (c.form == CutoutForm::box || c.form == CutoutForm::cylinder) return space_box_handles(c);
-    glm::dvec2 at(c.center_m);
-    if (c.form == CutoutForm::brush) at = middle_of(c.dabs);
-    if (c.form == CutoutForm::convex) {
-        at = glm::dvec2(0);
-        for (const glm::dvec3& corner : c.corners) at += glm::dvec2(corner) / double(c.corners.size());
+    if (c.form == CutoutForm::brush) {
+        const glm::dvec2 at = middle_of(c.dabs);
+        return {{Role::move, at, 0, at}, {Role::radius, at + glm::dvec2(c.radius_m, 0), 0, at}};
     }
-    return {{Role::move, at, 0, at}};
+    glm::dvec2 at(0);
+    for (const glm::dvec3& corner : c.corners) at += glm::dvec2(corner) / double(c.corners.size());
+    Handles list{{Role::move, at, 0, at}};
+    for (size_t i = 0; i < c.corners.size(); ++i)
+        list.push_back({Role::anchor, glm::dvec2(c.corners[i]), int(i), at});
+    return list;
 }
 Handles handles(const SplineDecal& s) {
     Handles list;
@@ -222,6 +225,14 @@ struct Drag {
             drag_space_box(v, handle, to);
     }
     void operator()(Cutout& c) const {
+        if (handle.role == Role::radius) {  // of the brush: as far from its middle
+            c.radius_m = reach(handle.from_m, to);
+            return;
+        }
+        if (handle.role == Role::anchor) {  // a corner of a hull
+            c.corners[size_t(handle.index)] += glm::dvec3(to - handle.at_m, rise_m);
+            return;
+        }
         if (handle.role != Role::move) return drag_space_box(c, handle, to);
         const glm::dvec2 by = to - handle.at_m;
         c.center_m += glm::dvec3(by, rise_m);

@@ -3,7 +3,6 @@
 #include <cstring>
 #include <span>
 
-#include "runtime/base/log.h"
 #include "runtime/document/document.h"
 #include "runtime/document/function_library.h"
 #include "runtime/gpu/shader_library.h"

@@ -64,6 +64,8 @@ TEST(Handles, GoWhereTheyAreTakenAndTheDocumentTakesWhatComesOfIt) {
             const auto* event = std::get_if<Event>(&moved);
             if (event && event->kind == EventKind::crash && !check_shape(moved).ok())
                 continue;  // too short: said
+            const auto* cutout = std::get_if<Cutout>(&moved);
+            if (cutout && cutout->form == CutoutForm::convex && !check_shape(moved).ok()) continue;  // flat: said
             ASSERT_TRUE(check_shape(moved).ok()) << check_shape(moved).message() << text_of(moved);
             const std::vector<Handle> after = handles_of(moved);
             ASSERT_EQ(after.size(), handles.size());
@@ -106,7 +108,13 @@ TEST(Handles, BoxesInSpaceTurnAroundTheUprightAndGrow) {
     }
     const Cutout box{.form = CutoutForm::box, .center_m = {5, 6, 1}, .half_m = {3, 2, 4}};
     EXPECT_EQ(handles_of(box).size(), 3u);
-    EXPECT_EQ(handles_of(Cutout{.form = CutoutForm::brush, .dabs = {{1, 2}}, .radius_m = 2}).size(), 1u);
+    const OperatorShape brush = Cutout{.form = CutoutForm::brush, .dabs = {{1, 2}}, .radius_m = 2};
+    EXPECT_EQ(std::get<Cutout>(dragged(brush, handles_of(brush)[1], {1, 7, 0}, 0)).radius_m, 5);
+    const OperatorShape hull =
+        Cutout{.form = CutoutForm::convex, .corners = {{0, 0, 0}, {4, 0, 0}, {0, 4, 0}, {1, 1, 4}}};
+    const auto pulled = std::get<Cutout>(dragged(hull, handles_of(hull)[2], {9, 1, 3}, 1));
+    EXPECT_EQ(pulled.corners[1], glm::dvec3(9, 1, 2)) << "as high above the ground as it was";
+    EXPECT_EQ(pulled.corners[3], glm::dvec3(1, 1, 4));
     // Lying on its side, what is upright has no handle.
     EXPECT_EQ(handles_of(VolumeDecal{.half_m = {3, 2, 4}, .direction = {1, 0, 0}}).size(), 2u);
 }
