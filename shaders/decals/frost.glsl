@@ -10,15 +10,14 @@ float rime(Place at) {
     float fold = 0.0;
     float share = 0.5;
     float size = feather;
-    for (int i = 0; i < 4; ++i) {
-        // Finer ones than texels can show are their mean.
-        fold += share * mix(0.75, 1.0 - abs(noise(q, at.seed + 10u)), detail(0.4 * size, at));
+    for (int i = 0; i < 3; ++i) {
+        // Those finer than texels can show are their mean.
+        fold += share * mix(0.72, 1.0 - abs(noise(q, at.seed + 10u)), detail(2.5 * size, at));
         size /= 2.1;
         q = vec2(0.8 * q.x - 0.6 * q.y, 0.6 * q.x + 0.8 * q.y) * 2.1;
         share *= 0.55;
     }
-    float shows = detail(0.5 * feather, at);
-    return mix(0.55, ramp(0.45, 0.85, fold), shows) + 0.6 * patches;
+    return ramp(0.4, 0.95, fold) + 0.6 * patches;
 }
 
 float relief(Place at) {
@@ -26,7 +25,7 @@ float relief(Place at) {
 }
 
 void decal(Place at, inout Surface s) {
-    float white = clamp(rime(at) - 0.9 + 1.3 * cold * at.edge, 0.0, 1.0);
+    float white = ramp(0.0, 1.2, rime(at) - 0.8 + 1.3 * cold * at.edge);
     s.colour *= srgb(0.90, 0.94, 0.98);
     float crystal = mix(0.5, random(at.p / 0.006, at.seed + 3u), detail(0.006, at));
     s.gloss = mix(0.35, 0.75, sparkle * crystal);

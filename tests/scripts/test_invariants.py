@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 COUNT = 500
-# Short sequences of operators alone; LOAM_SEQUENCES=1000 is what docs/measurements.md speaks of (about 20 minutes).
+# Short sequences of operators alone; LOAM_SEQUENCES=1000 is what docs/measurements.md speaks of (20 minutes).
 SEQUENCES = int(os.environ.get("LOAM_SEQUENCES", "10"))
 pytestmark = pytest.mark.usefixtures("has_device")
 
