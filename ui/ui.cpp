@@ -82,6 +82,9 @@ void Ui::take_events() {
         const bool mouse_event = e.type == Event::Type::mouse_move || e.type == Event::Type::mouse_button ||
                                  e.type == Event::Type::mouse_leave || e.type == Event::Type::wheel;
         if (button || (key && mouse_event)) break;  // after a button nothing more; after a key no pointer
+        // What is typed goes to what has just been opened, once its first field has the focus.
+        if (focus_first_ && !overlays_.empty() && (e.type == Event::Type::key || e.type == Event::Type::text))
+            break;
         if (e.type == Event::Type::mouse_button && active_ != 0) {
             // A drag is seen to its end before the button changes: no widget has to care about a last
             // movement.
@@ -111,8 +114,9 @@ void Ui::take_events() {
                 key = true;
                 if (!e.down) break;
                 keys_.push_back({e});
-                stop =
-                    e.key == Key::tab || e.key == Key::enter || e.key == Key::escape;  // may move the focus
+                // May move the focus, or be a shortcut that opens something.
+                stop = e.key == Key::tab || e.key == Key::enter || e.key == Key::escape || e.mods.ctrl ||
+                       (e.key >= Key::f1 && e.key <= Key::f12);
                 break;
             case Event::Type::text:
                 keys_.push_back({e});

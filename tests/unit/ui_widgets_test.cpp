@@ -521,6 +521,19 @@ TEST(UiFuzz, RandomEventsNeverCrashAndLeaveNothingCaptured) {
     EXPECT_EQ(h.last.duplicate_ids, 0);
 }
 
+TEST(UiWidgets, WhatIsTypedAfterAShortcutGoesToTheDialogThatItOpens) {
+    Harness h;
+    std::string name;
+    const auto build = [&](Ui& ui) {
+        if (ui.take_key(Key::l, kCtrl)) open_dialog(ui, "Name it");
+        if (auto asked = dialog(ui, "Name it", 300)) text_field(ui, "Name", name);
+    };
+    std::vector<Event> batch = {Event::key_down(Key::l, kCtrl)};  // all at once, as after a long frame
+    for (const Event& e : typed("/a/b")) batch.push_back(e);
+    h.frame(std::span<const Event>(batch), build);
+    EXPECT_EQ(name, "/a/b");
+}
+
 TEST(UiWidgets, ATextAreaIsTypedInAndScrolls) {
     Harness h;
     std::string value = "one\ntwo\nthree";
