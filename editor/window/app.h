@@ -81,6 +81,7 @@ struct Wish {
 class App {
   public:
     App(Session& session, const ui::Theme& theme);
+    ~App() { leave_function(); }
 
     // --- parts; panels read and change these ---
     Session& session;
@@ -160,7 +161,8 @@ class App {
     std::string new_function_name;  // of the dialog
     [[nodiscard]] const std::vector<std::string>& function_names();
     void edit_function(const std::string& name);  // in the panel; what was written there before is kept
-    void try_function();                          // saves and shows the text if it compiles
+    void try_function();    // saves and shows the text if it compiles, else keeps it beside
+    void leave_function();  // what was written just now is tried
     bool poll_functions();                        // twice a second; whether something is shown otherwise
 
     // --- the time (timeline.cpp) ---
@@ -235,7 +237,6 @@ class App {
     void read_layer_names();
     std::vector<std::string> function_names_;
     uint64_t function_names_revision_ = ~uint64_t{0};
-    std::map<std::string, std::string> function_drafts_;  // that do not compile yet
 
     bool scene_changed_ = true, settings_changed_ = false, quality_changed_ = false;
 

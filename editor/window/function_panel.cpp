@@ -30,6 +30,12 @@ std::string title_of_function(const std::string& name) {
     return title;
 }
 
+std::vector<std::string> titles_of(const std::vector<std::string>& names) {
+    std::vector<std::string> titles;
+    for (const std::string& name : names) titles.push_back(title_of_function(name));
+    return titles;
+}
+
 // The marks of a message of lines "decals/NAME.glsl:LINE: what".
 std::vector<ui::TextAreaMark> marks_of(const std::string& message) {
     std::vector<ui::TextAreaMark> marks;
@@ -52,8 +58,8 @@ std::vector<ui::TextAreaMark> marks_of(const std::string& message) {
 bool function_properties(App& app, ui::Ui& ui, std::string& function,
                          std::map<std::string, double>& parameters) {
     const std::vector<std::string>& names = app.function_names();
-    std::vector<std::string> titles{"None"};
-    for (const std::string& name : names) titles.push_back(title_of_function(name));
+    std::vector<std::string> titles = titles_of(names);
+    titles.insert(titles.begin(), "None");
     const std::vector<std::string_view> choices(titles.begin(), titles.end());
     const auto found = std::find(names.begin(), names.end(), function);
     int which = found == names.end() ? 0 : int(found - names.begin()) + 1;
@@ -148,26 +154,31 @@ const std::vector<std::string>& App::function_names() {
 
 void App::edit_function(const std::string& name) {
     if (functions.name != name) {
-        if (!functions.name.empty() && functions.text != functions.saved)
-            function_drafts_[functions.name] = functions.text;
+        leave_function();
         const auto text = session.document().functions().text(name);
         functions = {
             .name = name, .text = text ? *text : std::string(), .saved = text ? *text : std::string()};
+        functions.tried = functions.saved;
         if (!text) functions.error = text.message();
-        if (const auto draft = function_drafts_.find(name); draft != function_drafts_.end()) {
-            functions.text = draft->second;
-            functions.tried = functions.saved;
-            function_drafts_.erase(draft);
-        }
+        if (auto draft = session.document().functions().draft(name)) functions.text = std::move(*draft);
     }
     show_functions = true;
+}
+
+void App::leave_function() {
+    if (!functions.name.empty() && functions.text != functions.saved && functions.text != functions.tried)
+        try_function();
 }
 
 void App::try_function() {
     functions.tried = functions.text;
     const auto dirt = session.apply({.body = FunctionCommand{functions.name, functions.text}});
     functions.error = dirt ? std::string() : dirt.message();
-    if (!dirt) return;
+    if (!dirt) {
+        const Status kept = session.document().functions().keep_draft(functions.name, functions.text);
+        if (!kept) fail(kept.message());
+        return;
+    }
     functions.saved = functions.text;
     scene_changed_ = true;
     function_names_revision_ = ~uint64_t{0};
@@ -210,8 +221,7 @@ void build_function_panel(App& app, ui::Ui& ui) {
     {
         auto top = ui.row_in(ui::cut(area, ui::Edge::top, ui.px(28)), 8);
         const std::vector<std::string>& names = app.function_names();
-        std::vector<std::string> titles;
-        for (const std::string& name : names) titles.push_back(title_of_function(name));
+        const std::vector<std::string> titles = titles_of(names);
         const std::vector<std::string_view> choices(titles.begin(), titles.end());
         int which = int(std::find(names.begin(), names.end(), f.name) - names.begin());
         auto row = ui.row({ui::fixed(240), ui::fixed(70), ui::flex(), ui::fixed(28)}, 26);
@@ -248,7 +258,11 @@ void build_function_panel(App& app, ui::Ui& ui) {
         ui.pop_id();
     }
     if (f.text == f.tried || f.text == f.saved) {
-        if (f.text == f.saved && f.tried != f.saved) f.error.clear(), f.tried = f.saved;
+        if (f.text == f.saved && f.tried != f.saved) {  // taken back
+            f.error.clear();
+            f.tried = f.saved;
+            app.session.document().functions().drop_draft(f.name);
+        }
         return;
     }
     if (ui.time_s() >= f.changed_s + kPause_s) {

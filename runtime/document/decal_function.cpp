@@ -7,6 +7,7 @@
 #include <optional>
 #include <regex>
 #include <set>
+#include <utility>
 
 #include "runtime/glsl/shader_sources.h"
 
@@ -96,6 +97,9 @@ const std::map<std::string, int64_t, std::less<>> kCalls = {{"random", 40}, {"no
                                                             {"cells", 700}, {"ramp", 15},  {"srgb", 30},
                                                             {"detail", 8},  {"Place", 1},  {"Surface", 1}};
 constexpr int kMostTurns = 256;
+// Compilers walk what is nested by calling themselves: these keep them, and us, far from the end of the stack.
+constexpr int kMostNested = 64;                // braces, brackets, ifs without braces, links of else
+constexpr int kMostTokensOfStatement = 2'000;  // operators nest too
 
 struct Token {
     enum class Kind { name, number, mark } kind;
@@ -357,6 +361,9 @@ class Checker {
     // From its "{" to after its "}".
     Status block(int64_t turns) {
         const int begin = line();
+        if (++braces_ > kMostNested) return fail("more than {} blocks in one another", kMostNested);
+        const int outer = std::exchange(elses_around_, elses_);
+        end_statement();
         ++at_;
         while (at_ < tokens_.size() && !is("}")) {
             if (is("{"))
@@ -368,6 +375,9 @@ class Checker {
         }
         if (at_ == tokens_.size()) return fail_at(begin, "this \"{{\" is never closed");
         ++at_;
+        --braces_;
+        elses_ = std::exchange(elses_around_, outer);
+        end_statement();
         return {};
     }
 
@@ -431,9 +441,27 @@ class Checker {
         return {};
     }
 
+    // After it; what is not an "else" ends a chain of them.
+    void end_statement() {
+        length_ = ifs_ = brackets_ = 0;
+        if (!is("else")) elses_ = elses_around_;
+    }
+
+    Status nesting(std::string_view text) {
+        if (++length_ > kMostTokensOfStatement)
+            return fail("a statement of more than {} words and marks: make several of it", kMostTokensOfStatement);
+        brackets_ += text == "(" ? 1 : text == ")" ? -1 : 0;
+        ifs_ += text == "if" ? 1 : 0;
+        elses_ += text == "else" ? 1 : 0;
+        if (std::max({brackets_, ifs_, elses_}) > kMostNested)
+            return fail("more than {} brackets, ifs or elses in one another", kMostNested);
+        return {};
+    }
+
     // One token of a body, executed `turns` times.
     Status token(int64_t turns) {
         const Token t = tokens_[at_];
+        LOAM_TRY(nesting(t.text));
         cost_ = std::min<int64_t>(cost_ + turns, kMostFunctionSteps * 4);
         const bool field = at_ > 0 && tokens_[at_ - 1].text == ".";
         if (t.text == "[") {
@@ -443,6 +471,7 @@ class Checker {
             LOAM_TRY(name(t, turns));
         }
         ++at_;
+        if (t.text == ";") end_statement();
         return {};
     }
 
@@ -479,6 +508,9 @@ class Checker {
     std::vector<Token> tokens_;
     size_t at_ = 0;
     int64_t cost_ = 0;
+    int braces_ = 0;
+    int length_ = 0, ifs_ = 0, brackets_ = 0;  // of the statement
+    int elses_ = 0, elses_around_ = 0;         // of the chain, and of those that the block stands in
     std::map<std::string, int64_t, std::less<>> steps_;      // of functions defined so far
     std::map<std::string, int64_t, std::less<>> constants_;  // whole numbers
     std::vector<std::string> counters_;                      // of the loops around

@@ -14,6 +14,7 @@ namespace {
 
 constexpr const char* kFolder = "decals";
 constexpr const char* kSuffix = ".glsl";
+constexpr const char* kDraft = ".glsl.draft";
 
 std::optional<std::string> read_file(const std::filesystem::path& path) {
     std::error_code none;
@@ -109,15 +110,34 @@ void FunctionLibrary::show(Entry& entry, DecalFunction function) {
     entry.failed_texels = 0;
 }
 
+Status FunctionLibrary::write(const std::filesystem::path& file, const std::string& text) const {
+    std::error_code failure;
+    std::filesystem::create_directories(project_ / kFolder, failure);
+    if (failure)
+        return error("cannot make the folder {}: {}", (project_ / kFolder).string(), failure.message());
+    return replace_file(file, {reinterpret_cast<const uint8_t*>(text.data()), text.size()});
+}
+
+std::optional<std::string> FunctionLibrary::draft(const std::string& name) const {
+    return read_file(project_ / kFolder / (name + kDraft));
+}
+
+Status FunctionLibrary::keep_draft(const std::string& name, const std::string& text) const {
+    LOAM_TRY(check_function_name(name));
+    return write(project_ / kFolder / (name + kDraft), text);
+}
+
+void FunctionLibrary::drop_draft(const std::string& name) const {
+    std::error_code none;
+    std::filesystem::remove(project_ / kFolder / (name + kDraft), none);
+}
+
 Status FunctionLibrary::keep(const std::string& name) {
     std::error_code failure;
     if (std::filesystem::exists(file_of(name), failure)) return {};
     const auto text = shipped(name);
     if (!text) return {};
-    std::filesystem::create_directories(project_ / kFolder, failure);
-    if (failure)
-        return error("cannot make the folder {}: {}", (project_ / kFolder).string(), failure.message());
-    LOAM_TRY(replace_file(file_of(name), {reinterpret_cast<const uint8_t*>(text->data()), text->size()}));
+    LOAM_TRY(write(file_of(name), *text));
     const std::lock_guard lock(mutex_);
     if (const auto it = entries_.find(name); it != entries_.end()) it->second.time = time_of(file_of(name));
     return {};
@@ -127,11 +147,8 @@ Status FunctionLibrary::set(const std::string& name, std::string text) {
     auto function = read_function(name, text);
     if (!function.ok()) return function.error();
     LOAM_TRY(compile_function(*function));
-    std::error_code failure;
-    std::filesystem::create_directories(project_ / kFolder, failure);
-    if (failure)
-        return error("cannot make the folder {}: {}", (project_ / kFolder).string(), failure.message());
-    LOAM_TRY(replace_file(file_of(name), {reinterpret_cast<const uint8_t*>(text.data()), text.size()}));
+    LOAM_TRY(write(file_of(name), text));
+    drop_draft(name);
     const std::lock_guard lock(mutex_);
     Entry& entry = entries_[name];
     entry.seen = std::move(text);
@@ -157,7 +174,7 @@ std::vector<std::string> FunctionLibrary::poll() {
         Entry& entry = entries_[name];
         entry.time = time;
         if (text && *text == entry.seen) continue;
-        if (text) entry.seen = *text;
+        entry.seen = text.value_or("");  // one that is gone may come back as it was
         if (!compiled.ok()) {
             entry.error = compiled.message();
         } else {

@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,11 @@ class FunctionLibrary {
     Status keep(const std::string& name);  // one that comes with Loam becomes the project's
     // Compiles, saves and shows it.
     Status set(const std::string& name, std::string text);
+    // A text that is being written and does not compile yet, decals/NAME.glsl.draft: kept when an editor is
+    // closed, gone when something is set.
+    [[nodiscard]] std::optional<std::string> draft(const std::string& name) const;
+    Status keep_draft(const std::string& name, const std::string& text) const;
+    void drop_draft(const std::string& name) const;
     // Whether its file has a text that is not shown, such as one that another program saved.
     std::vector<std::string> poll();  // names shown otherwise from now on
 
@@ -53,6 +59,7 @@ class FunctionLibrary {
         uint64_t failed_texels = 0;
     };
     void show(Entry& entry, DecalFunction function);
+    Status write(const std::filesystem::path& file, const std::string& text) const;
 
     std::filesystem::path project_;
     mutable std::mutex mutex_;

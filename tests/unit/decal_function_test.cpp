@@ -142,6 +142,23 @@ TEST(DecalFunction, WhatItMayNotDoIsSaidAtItsLine) {
     std::string nine;
     for (char c = 'a'; c < 'j'; ++c) nine += std::string("//@ ") + c + " 0 0 1\n";
     EXPECT_EQ(refusal(nine), "decals/f.glsl:9: the limit is 8 parameters");
+    // What would have a compiler walk to the end of its stack.
+    const auto times = [](int count, const std::string& text) {
+        std::string all;
+        for (int i = 0; i < count; ++i) all += text;
+        return all;
+    };
+    for (const auto& [text, message] : std::vector<std::pair<std::string, std::string>>{
+             {times(30'000, "{") + times(30'000, "}"), "more than 64 blocks in one another"},
+             {"s.gloss = " + times(9'000, "(") + "1.0" + times(9'000, ")") + ";", "more than 64 brackets"},
+             {"float a = 0.0; " + times(25'000, "a,") + "a;", "a statement of more than 2000 words"},
+             {"s.gloss = at.p.x" + times(6'000, " + at.p.x") + ";", "a statement of more than 2000 words"},
+             {times(65, "if (at.p.x > 1.0) "), "more than 64 brackets, ifs"},
+             {times(2'000, "if (at.p.x > 1.0); else ") + ";", "more than 64 brackets, ifs or elses"},
+             {times(300, "if (at.p.x > 1.0) { } else ") + "{ }", "more than 64 brackets, ifs or elses"}})
+        EXPECT_NE(refusal(with_body(text)).find(message), std::string::npos) << refusal(with_body(text));
+    EXPECT_EQ(refusal(with_body(times(200, "if (at.p.x > 1.0) { s.gloss = 0.1; } else { s.gloss = 0.2; }\n"))), "accepted");
+    EXPECT_EQ(refusal(with_body(times(60, "if (at.p.x > 1.0) { s.gloss = 0.1; } else ") + ";")), "accepted");
     EXPECT_TRUE(refusal(std::string(70'000, ' ')).find("70000 bytes, the limit is 65536") !=
                 std::string::npos);
     EXPECT_TRUE(refusal(std::string("\0\x01\xff", 3)).starts_with("decals/f.glsl:1: "));
@@ -211,6 +228,18 @@ TEST(DecalFunction, TheVersionBeforeStaysUntilTheNextCompiles) {
     EXPECT_TRUE(library.poll().empty());
     EXPECT_EQ(library.shown("mine")->text, second);
     EXPECT_NE(library.errors().at("mine").find("is gone"), std::string::npos);
+    save(library.file_of("mine"), second);
+    EXPECT_EQ(library.poll(), std::vector<std::string>{"mine"}) << "it is back";
+    EXPECT_TRUE(library.errors().empty());
+
+    // What was being written and does not compile is kept beside it, until something does.
+    EXPECT_EQ(library.draft("mine"), std::nullopt);
+    const std::string unfinished = with_body("s.gloss = ");
+    ASSERT_TRUE(library.keep_draft("mine", unfinished).ok());
+    EXPECT_EQ(FunctionLibrary(folder.path()).draft("mine"), unfinished);
+    EXPECT_EQ(FunctionLibrary(folder.path()).text("mine").value(), second);
+    ASSERT_TRUE(library.set("mine", first).ok());
+    EXPECT_EQ(library.draft("mine"), std::nullopt);
 }
 
 TEST(DecalFunction, ADocumentKeepsItsOwnCopyAndDirtIsWhereItShows) {
