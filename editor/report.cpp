@@ -70,6 +70,10 @@ Json to_report(const Document::Statistics& s) {
             {"index_pages", s.index_pages},
             {"database_bytes", s.database_bytes},
             {"operators", s.operators},
+            {"loaded_operators", s.loaded_operators},
+            {"operator_nodes", s.operator_nodes},
+            {"loaded_nodes", s.loaded_nodes},
+            {"node_reads", s.node_reads},
             {"commands", s.commands},
             {"cached_pages", s.cached_pages},
             {"cache_bytes", s.cache_bytes}};

@@ -236,6 +236,79 @@ Result<BenchTable> elsewhere(const BenchRequest& request) {
     return table;
 }
 
+// Decals of 1 to 8 m all over the map, which are read where somebody looks: near the ground, then from far.
+Result<BenchTable> decals_all_over(const BenchRequest& request) {
+    BenchTable table{"decals all over the map: what is read of them (times are medians but for opening)", {}};
+    for (const int count : {10, 10'000, 100'000}) {
+        if (request.quick && count > 10'000) continue;
+        auto project = TemporaryProject::create_copy(request.project);
+        if (!project) return project.error();
+        {
+            auto document = Document::open(project->path());
+            if (!document) return document.error();
+            const WorldRect map = (*document)->bounds();
+            for (int i = 0; i < count; ++i) {
+                TerrainDecal decal{.x_m = map.min_x + map.width() * std::fmod(0.61803 * i, 1.0),
+                                   .y_m = map.min_y + map.height() * std::fmod(0.32471 * i, 1.0)};
+                decal.half_m = glm::dvec2(0.5 * std::exp2(i % 4));
+                decal.heading_rad = i;
+                decal.material.colour = {0.5, 0.3, 0.2};
+                if (auto dirt = (*document)->apply({AddOperatorCommand{decal, {}}}); !dirt)
+                    return dirt.error();
+            }
+        }
+        const double open_ms = now_ms();
+        auto session = Session::open(project->path(), request.session);
+        if (!session) return session.error();
+        const double opened_ms = now_ms() - open_ms;
+        const Document& document = (*session)->document();
+        const WorldRect map = document.bounds();
+        const glm::dvec2 at(map.center().x, map.min_y + 0.3 * map.height());
+        const auto picture_ms = [&](double up_m) -> Result<double> {
+            const double start_ms = now_ms();
+            auto drawn = (*session)->render(
+                {.camera = over(**session, at, up_m), .width = request.width, .height = request.height});
+            if (!drawn) return drawn.error();
+            return now_ms() - start_ms;
+        };
+        auto near_ms = picture_ms(8);
+        if (!near_ms) return near_ms.error();
+        const auto near = document.statistics();
+        std::vector<double> apply_ms, frame_ms;
+        const RenderRequest one{.camera = over(**session, at, 8),
+                                .width = request.width,
+                                .height = request.height,
+                                .frame = moving_frame(0.5f),
+                                .max_frames = 1};
+        const uint64_t mine = near.operators + 1;
+        for (int i = 0; i < (request.quick ? 6 : 120); ++i) {
+            const TerrainDecal decal{.x_m = at.x + 0.02 * i, .y_m = at.y};
+            double start_ms = now_ms();
+            const CommandBody body =
+                i == 0 ? CommandBody(AddOperatorCommand{decal, {}}) : EditOperatorCommand{mine, decal, {}};
+            if (auto dirt = (*session)->apply({body}); !dirt) return dirt.error();
+            apply_ms.push_back(now_ms() - start_ms);
+            start_ms = now_ms();
+            if (auto drawn = (*session)->render(one); !drawn) return drawn.error();
+            frame_ms.push_back(now_ms() - start_ms);
+        }
+        auto far_ms = picture_ms(2000);
+        if (!far_ms) return far_ms.error();
+        const auto far = document.statistics();
+        table.rows.push_back({{"decals", count},
+                              {"nodes", near.operator_nodes},
+                              {"open ms", rounded(opened_ms, 1)},
+                              {"picture at 8 m, ms", rounded(*near_ms, 0)},
+                              {"read for it", near.loaded_operators},
+                              {"of nodes", near.node_reads},
+                              {"move one ms", rounded(spread_of(apply_ms).median, 3)},
+                              {"frame ms", rounded(spread_of(frame_ms).median, 1)},
+                              {"picture at 2 km, ms", rounded(*far_ms, 0)},
+                              {"in memory then", far.loaded_operators}});
+    }
+    return table;
+}
+
 Result<BenchTable> memory(const BenchRequest& request) {
     BenchTable table{"what an event takes", {}};
     auto project = TemporaryProject::create_copy(request.project);
@@ -393,7 +466,7 @@ Result<BenchTable> dropped(const BenchRequest& request) {
 
 Result<BenchReport> bench_events(const BenchRequest& request) {
     BenchReport report;
-    for (const auto part : {follow_the_dirt, emission, elsewhere, memory}) {
+    for (const auto part : {follow_the_dirt, emission, elsewhere, decals_all_over, memory}) {
         auto table = part(request);
         if (!table) return table.error();
         report.push_back(std::move(*table));

@@ -223,16 +223,14 @@ void bind_events(py::module_& module) {
 }
 
 py::object edit_operator(Project& p, uint64_t id, const py::kwargs& changes) {
-    for (const Operator& op : p.session().document().operators()) {
-        if (op.id != id) continue;
-        py::dict command(to_python(Json::parse(operator_json(op))));
-        for (const char* key : {"order", "enabled"}) command.attr("pop")(key);
-        command.attr("update")(changes);
-        command["cmd"] = "edit";
-        command["id"] = id;
-        return p.apply(command);
-    }
-    throw PythonError(fmt::format("there is no operator {}", id));
+    const auto op = p.session().document().find_operator(id);
+    if (!op) throw PythonError(fmt::format("there is no operator {}", id));
+    py::dict command(to_python(Json::parse(operator_json(*op))));
+    for (const char* key : {"order", "enabled"}) command.attr("pop")(key);
+    command.attr("update")(changes);
+    command["cmd"] = "edit";
+    command["id"] = id;
+    return p.apply(command);
 }
 
 // Control points of a smooth curve through places, with the ground's height where a place has none.

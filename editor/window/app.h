@@ -231,8 +231,9 @@ class App {
     uint64_t history_revision_ = ~uint64_t{0};
     std::vector<ObjectRow> objects_;
     std::vector<ObjectRow> timed_objects_;
-    uint64_t objects_revision_ = ~uint64_t{0};
+    std::optional<uint64_t> objects_revision_, timed_objects_revision_;
     std::optional<Operator> selected_operator_;
+    ObjectRow selected_row_;
     uint64_t selected_operator_revision_ = ~uint64_t{0};
     void read_layer_names();
     std::vector<std::string> function_names_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <utility>
 
 #include "editor/window/panels.h"
 
@@ -39,6 +40,18 @@ void add_times(const Operator& op, ObjectRow& row) {
     }
 }
 
+ObjectRow row_of(const Operator& op) {
+    const std::string detail = detail_of(op.shape);
+    ObjectRow row{
+        .id = op.id,
+        .order = op.order,
+        .title = fmt::format("{} {}{}{}", kind_title(op.shape), op.id, detail.empty() ? "" : " · ", detail),
+        .enabled = op.enabled,
+        .bounds = op.extent()};
+    add_times(op, row);
+    return row;
+}
+
 bool found(const std::string& title, const std::string& search) {
     const auto same = [](char a, char b) {
         return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
@@ -71,30 +84,46 @@ void object_row(App& app, ui::Ui& ui, const ObjectRow& object) {
 
 }  // namespace
 
-// Kept while a stroke goes on: of many objects the list is long, and the stroke's own are not looked for.
+// Kept while a stroke goes on: of many objects the list is long, and the stroke's own are not looked for. All
+// are read when the list is first looked at, then those that change.
 const std::vector<ObjectRow>& App::objects() {
-    const uint64_t revision = session.document().revision();
+    const Document& document = session.document();
+    const uint64_t revision = document.revision();
     if (objects_revision_ == revision || tools.stroking()) return objects_;
+    const auto changed = objects_revision_ ? document.changed_operators(*objects_revision_) : std::nullopt;
     objects_revision_ = revision;
-    objects_.clear();
-    timed_objects_.clear();
-    const std::vector<Operator> operators = session.document().operators();
-    for (auto op = operators.rbegin(); op != operators.rend(); ++op) {
-        const std::string detail = detail_of(op->shape);
-        objects_.push_back({.id = op->id,
-                            .order = op->order,
-                            .title = fmt::format("{} {}{}{}", kind_title(op->shape), op->id,
-                                                 detail.empty() ? "" : " · ", detail),
-                            .enabled = op->enabled,
-                            .bounds = op->extent()});
-        add_times(*op, objects_.back());
-        // Prints are too many for bars.
-        if (objects_.back().timed && !std::holds_alternative<Footprint>(op->shape))
-            timed_objects_.push_back(objects_.back());
+    if (!changed) {
+        const std::vector<Operator> operators = document.operators();
+        objects_.clear();
+        for (auto op = operators.rbegin(); op != operators.rend(); ++op) objects_.push_back(row_of(*op));
+        return objects_;
     }
+    if (changed->empty()) return objects_;
+    std::erase_if(objects_, [&](const ObjectRow& row) {
+        return std::binary_search(changed->begin(), changed->end(), row.id);
+    });
+    const auto before = [](const ObjectRow& a, const ObjectRow& b) {
+        return std::pair(a.order, a.id) > std::pair(b.order, b.id);
+    };
+    const ptrdiff_t kept = ptrdiff_t(objects_.size());
+    for (const uint64_t id : *changed)
+        if (const auto op = document.find_operator(id)) objects_.push_back(row_of(*op));
+    std::sort(objects_.begin() + kept, objects_.end(), before);
+    std::inplace_merge(objects_.begin(), objects_.begin() + kept, objects_.end(), before);
+    return objects_;
+}
+
+const std::vector<ObjectRow>& App::timed_objects() {
+    const uint64_t revision = session.document().revision();
+    if (timed_objects_revision_ == revision || tools.stroking()) return timed_objects_;
+    timed_objects_revision_ = revision;
+    timed_objects_.clear();
+    // Prints are too many for bars.
+    for (const Operator& op : session.document().timed_operators())
+        if (!std::holds_alternative<Footprint>(op.shape)) timed_objects_.push_back(row_of(op));
     std::stable_sort(timed_objects_.begin(), timed_objects_.end(),
                      [](const ObjectRow& a, const ObjectRow& b) { return a.from_s < b.from_s; });
-    return objects_;
+    return timed_objects_;
 }
 
 const Operator* App::selected_operator() {
@@ -102,15 +131,13 @@ const Operator* App::selected_operator() {
         selected_operator_->id != selected_object) {
         selected_operator_revision_ = session.document().revision();
         selected_operator_ = session.document().find_operator(selected_object);
+        if (selected_operator_) selected_row_ = row_of(*selected_operator_);
     }
     return selected_operator_ ? &*selected_operator_ : nullptr;
 }
 
 const ObjectRow* App::selected_row() {
-    const std::vector<ObjectRow>& rows = objects();
-    const auto at =
-        std::find_if(rows.begin(), rows.end(), [&](const ObjectRow& r) { return r.id == selected_object; });
-    return at == rows.end() ? nullptr : &*at;
+    return selected_operator() ? &selected_row_ : nullptr;
 }
 
 void App::show_object(uint64_t id, bool shown) {
@@ -148,7 +175,7 @@ void App::frame_object() {
 }
 
 void object_properties(App& app, ui::Ui& ui) {
-    const std::vector<ObjectRow>& rows = app.objects();  // another one after selected_row() below
+    const std::vector<ObjectRow>& rows = app.objects();
     if (rows.empty()) return ui::label(ui, "No craters, decals, roads, cutouts or events yet", ui::Tone::dim);
     ui::text_field(ui, "##objects", app.object_search,
                    {.placeholder = fmt::format("Search {} objects", rows.size()), .icon = ui::Icon::search});

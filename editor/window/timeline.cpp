@@ -111,11 +111,6 @@ void App::set_time(double time_s) {
     apply({.body = TimeCommand{time_s}});
 }
 
-const std::vector<ObjectRow>& App::timed_objects() {
-    (void)objects();
-    return timed_objects_;
-}
-
 double App::timeline_end_s() {
     constexpr double kShortest_s = 30, kLongest_s = 3600;
     double end_s = kShortest_s;
@@ -134,7 +129,7 @@ void App::play(bool on) {
 void App::event_placed(const Command& command) {
     const auto* added = std::get_if<AddOperatorCommand>(&command.body);
     if (!added || !std::holds_alternative<Event>(added->shape)) return;
-    selected_object = objects().front().id;
+    for (const ObjectRow& row : timed_objects()) selected_object = std::max(selected_object, row.id);
     show_timeline = true;
     if (play_placed) play(true);
 }

@@ -91,6 +91,18 @@ void append_dirt(Dirt& to, const Dirt& more) {
     to.layers |= more.layers;
 }
 
+void append_dirt(Dirt& to, const Operator& op) {
+    if (!op.enabled) return;
+    const auto append = [](std::vector<WorldRect>& rects, const std::vector<WorldRect>& more) {
+        rects.insert(rects.end(), more.begin(), more.end());
+    };
+    append(to.height, op.height_rects());
+    append(to.index, op.index_rects());
+    append(to.texture, op.texture_rects());
+    append(to.cutout, op.cutout_rects());
+    to.texture_size_m = std::max(to.texture_size_m, op.texture_size_m());
+}
+
 std::vector<uint8_t> dirt_bytes(const Dirt& dirt) {
     ByteWriter writer;
     for (const auto* rects : {&dirt.height, &dirt.index, &dirt.texture}) write_rects(writer, *rects);

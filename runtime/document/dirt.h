@@ -16,6 +16,7 @@ namespace loam {
 void merge_rects(std::vector<WorldRect>& rects, size_t most);
 
 void append_dirt(Dirt& to, const Dirt& more);
+void append_dirt(Dirt& to, const Operator& op);  // where it shows; one that is off nowhere
 
 [[nodiscard]] std::vector<uint8_t> dirt_bytes(const Dirt& dirt);
 [[nodiscard]] Result<Dirt> dirt_of(std::span<const uint8_t> bytes);

@@ -4,6 +4,8 @@
 #include <bit>
 #include <chrono>
 #include <cmath>
+#include <set>
+#include <string_view>
 
 #include "runtime/base/check.h"
 #include "runtime/base/log.h"
@@ -150,7 +152,7 @@ Status Document::Impl::load() {
     height = height_shape(settings);
     index = index_shape(settings);
     operators.set_shows_heat(shows_heat(settings));
-    return pages->with_store([&](PageStore& reader) -> Status {
+    LOAM_TRY(pages->with_store([&](PageStore& reader) -> Status {
         LOAM_TRY(check_identity(reader, settings));
         auto time = reader.read_meta(kTimeMeta);
         if (!time.ok()) return time.error();
@@ -158,19 +160,7 @@ Status Document::Impl::load() {
             Dirt nothing;
             operators.set_time(time_s, nothing);
         }
-        size_t without_parts = 0;
-        std::string missing;  // of the first
-        LOAM_TRY(reader.for_each_operator([&](uint64_t id, const std::string& json) -> Status {
-            auto op = parse_operator(id, json);
-            if (!op.ok()) return error("terrain.db: {}", op.message());
-            // What is missing may come back; nothing that is saved depends on it.
-            if (const Status given = give_parts(*op); !given && without_parts++ == 0)
-                missing = given.message();
-            operators.set(*op);
-            return {};
-        }));
-        if (without_parts > 0)
-            log(LogLevel::warning, "stamps and decals that show nothing: {}; {}", without_parts, missing);
+        LOAM_TRY(load_operators(reader));
         auto journal = reader.journal_heads();
         if (!journal.ok()) return journal.error();
         heads = std::move(*journal);
@@ -189,7 +179,101 @@ Status Document::Impl::load() {
             *value = int64_t(*stored);
         }
         return {};
+    }));
+    if (mode == OpenMode::read_write) LOAM_TRY(give_nodes());
+    return {};
+}
+
+Status Document::Impl::load_operators(PageStore& reader) {
+    nodes = std::make_unique<OperatorNodes>(
+        [this](int64_t node) { return read_node(node); },
+        [this](uint64_t id) -> std::optional<int64_t> {
+            const auto row = pages->with_store([&](PageStore& from) { return from.read_operator(id); });
+            return row.ok() && row->has_value() ? (*row)->node : std::nullopt;
+        });
+    size_t without_parts = 0;
+    std::string missing;  // of the first
+    // What is missing may come back; nothing that is saved depends on it.
+    const auto note = [&](const Status& given, uint64_t operators) {
+        if (given.ok()) return;
+        if (without_parts == 0) missing = given.message();
+        without_parts += operators;
+    };
+    LOAM_TRY(reader.for_each_operator_without_node([&](const PageStore::OperatorRow& row) -> Status {
+        auto op = parse_operator(row.id, row.json);
+        if (!op.ok()) return error("terrain.db: {}", op.message());
+        note(give_parts(*op), 1);
+        operators.set(*op);
+        return {};
+    }));
+    LOAM_TRY(reader.for_each_node([&](const OperatorNode& node, uint64_t count) -> Status {
+        nodes->add_counted(node, count);
+        if (node.function.empty()) return {};
+        const auto function = functions->find(node.function);
+        if (!function.ok()) note(function.error(), count);
+        return {};
+    }));
+    if (without_parts > 0)
+        log(LogLevel::warning, "stamps and decals that show nothing: {}; {}", without_parts, missing);
+    return {};
+}
+
+Status Document::Impl::give_nodes() {
+    std::vector<Operator> moved;
+    for (const Operator& op : operators.sorted())
+        if (node_of(op)) moved.push_back(op);
+    if (moved.empty()) return {};
+    LOAM_TRY(store.begin());
+    for (const Operator& op : moved)
+        if (const Status status = store.write_operator(op.id, operator_json(op), node_of(op)); !status.ok()) {
+            store.rollback();
+            return status;
+        }
+    LOAM_TRY(store.commit());
+    for (const Operator& op : moved) {
+        operators.remove(op.id);
+        nodes->add_counted(*node_of(op), 1);
+    }
+    return {};
+}
+
+Result<Operator> Document::Impl::read_operator(const PageStore::OperatorRow& row) {
+    auto op = parse_operator(row.id, row.json);
+    if (op.ok()) (void)give_parts(*op);  // it shows nothing then, which was said at opening
+    return op;
+}
+
+std::vector<Operator> Document::Impl::read_node(int64_t node) {
+    std::vector<PageStore::OperatorRow> rows;
+    const Status status = pages->with_store([&](PageStore& reader) {
+        return reader.for_each_operator_of_node(node, [&](const PageStore::OperatorRow& row) {
+            rows.push_back(row);
+            return Status();
+        });
     });
+    if (!status.ok()) log(LogLevel::error, "operators are not shown: {}", status.message());
+    std::vector<Operator> read;
+    for (const PageStore::OperatorRow& row : rows) {
+        auto op = read_operator(row);
+        if (op.ok() && node_of(*op) != OperatorNode{node, material_of(op->shape)->function})
+            op =
+                error("operator {}: kept at another place than it has; `loam verify` finds all such", row.id);
+        if (op.ok())
+            read.push_back(std::move(*op));
+        else
+            log(LogLevel::error, "not shown: {}", op.message());
+    }
+    return read;
+}
+
+std::optional<Operator> Document::Impl::find_operator(uint64_t id) {
+    if (const Operator* op = operators.find(id)) return *op;
+    const auto row = pages->with_store([&](PageStore& reader) { return reader.read_operator(id); });
+    if (!row.ok()) log(LogLevel::error, "operator {} cannot be read: {}", id, row.message());
+    if (!row.ok() || !row->has_value()) return std::nullopt;
+    auto op = read_operator(**row);
+    if (!op.ok()) log(LogLevel::error, "terrain.db: {}", op.message());
+    return op.ok() ? std::optional(std::move(*op)) : std::nullopt;
 }
 
 Status Document::Impl::may_write() const {
@@ -312,24 +396,102 @@ void Document::operators_over_height(const WorldRect& rect, std::vector<const Op
 void Document::operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const {
     impl_->operators.over_index().query(rect, out);
 }
-void Document::operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const {
-    impl_->operators.over_texture().query(rect, out);
+namespace {
+
+// Of what is held, and behind it of what was read: in order of evaluation.
+void merge_into(std::vector<const Operator*>& out, const std::vector<const Operator*>& more) {
+    const auto middle = ptrdiff_t(out.size());
+    out.insert(out.end(), more.begin(), more.end());
+    std::inplace_merge(out.begin(), out.begin() + middle, out.end(),
+                       [](const Operator* a, const Operator* b) { return evaluated_before(*a, *b); });
+}
+
+}  // namespace
+
+void Document::operators_over_texture(const WorldRect& rect, double texel_m,
+                                      std::vector<const Operator*>& out) const {
+    impl_->operators.over_texture().query(rect, out, texel_m);
+    thread_local std::vector<const Operator*> read;
+    impl_->nodes->query(rect, texel_m, read);
+    merge_into(out, read);
 }
 void Document::operators_over_cutout(const WorldRect& rect, std::vector<const Operator*>& out) const {
     impl_->operators.over_cutout().query(rect, out);
 }
 void Document::operators_over_ground(const WorldRect& rect, std::vector<const Operator*>& out) const {
     impl_->operators.over_ground().query(rect, out);
+    thread_local std::vector<const Operator*> read;
+    impl_->nodes->query_volumes(rect, read);
+    merge_into(out, read);
 }
+
+std::vector<OperatorShape> Document::drawn_kinds() const {
+    const ReadLock lock(impl_->mutex);
+    std::vector<const Operator*> held;
+    constexpr double kEverywhere_m = 1.0e7;
+    impl_->operators.over_texture().query({-kEverywhere_m, -kEverywhere_m, kEverywhere_m, kEverywhere_m},
+                                          held);
+    std::vector<OperatorShape> kinds = impl_->nodes->kinds();
+    const auto function_of = [](const OperatorShape& shape) {
+        const DecalMaterial* material = material_of(shape);
+        return material ? std::string_view(material->function) : std::string_view();
+    };
+    std::set<std::pair<size_t, std::string_view>> seen;  // of what outlives it
+    for (const Operator* op : held)
+        if (seen.emplace(op->shape.index(), function_of(op->shape)).second) kinds.push_back(op->shape);
+    return kinds;
+}
+
 std::vector<Operator> Document::operators() const {
     const ReadLock lock(impl_->mutex);
-    return impl_->operators.sorted();
+    std::vector<Operator> all = impl_->operators.sorted();
+    if (impl_->nodes->counts().operators == 0) return all;
+    std::vector<PageStore::OperatorRow> rows;
+    const Status status = impl_->pages->with_store([&](PageStore& reader) {
+        return reader.for_each_operator([&](const PageStore::OperatorRow& row) {
+            if (row.node) rows.push_back(row);
+            return Status();
+        });
+    });
+    if (!status.ok()) log(LogLevel::error, "operators cannot be read: {}", status.message());
+    for (const PageStore::OperatorRow& row : rows) {
+        auto op = impl_->read_operator(row);
+        if (op.ok())
+            all.push_back(std::move(*op));
+        else
+            log(LogLevel::error, "terrain.db: {}", op.message());
+    }
+    std::sort(all.begin(), all.end(), evaluated_before);
+    return all;
+}
+
+std::vector<Operator> Document::timed_operators() const {
+    const ReadLock lock(impl_->mutex);
+    return impl_->operators.timed();
+}
+
+std::optional<std::vector<uint64_t>> Document::changed_operators(uint64_t since_revision) const {
+    const ReadLock lock(impl_->mutex);
+    if (since_revision < impl_->forgotten_revision) return std::nullopt;
+    std::vector<uint64_t> ids;
+    const auto& changes = impl_->changed_operators;
+    for (auto change = changes.rbegin(); change != changes.rend() && change->revision > since_revision;
+         ++change)
+        ids.push_back(change->id);
+    std::sort(ids.begin(), ids.end());
+    ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
+    return ids;
+}
+
+void Document::trim_operators(size_t most) {
+    if (impl_->nodes->loaded() <= most) return;
+    const Impl::Exclusive lock(*impl_);
+    impl_->nodes->trim(most);
 }
 
 std::optional<Operator> Document::find_operator(uint64_t id) const {
     const ReadLock lock(impl_->mutex);
-    const Operator* op = impl_->operators.find(id);
-    return op ? std::optional(*op) : std::nullopt;
+    return impl_->find_operator(id);
 }
 
 ResolvedRoles Document::roles() const {
@@ -363,7 +525,7 @@ double Document::time_s() const {
 
 Document::EventCost Document::event_cost(uint64_t id) const {
     const ReadLock lock(impl_->mutex);
-    const Operator* op = impl_->operators.find(id);
+    const auto op = impl_->find_operator(id);
     if (!op) return {};
     const auto cost = impl_->operators.cost_of(id);
     return {operator_json(*op).size(), cost.parts, cost.bytes};
@@ -375,7 +537,12 @@ Document::Statistics Document::statistics() const {
     s.height_pages = uint64_t(impl_->page_count.height);
     s.index_pages = uint64_t(impl_->page_count.index);
     s.database_bytes = impl_->pages->with_store([](PageStore& reader) { return reader.file_bytes(); });
-    s.operators = impl_->operators.size();
+    const auto nodes = impl_->nodes->counts();
+    s.operators = impl_->operators.size() + nodes.operators;
+    s.loaded_operators = impl_->operators.size() + nodes.loaded;
+    s.operator_nodes = nodes.nodes;
+    s.loaded_nodes = nodes.loaded_nodes;
+    s.node_reads = nodes.reads;
     s.commands = impl_->heads.size();
     s.cached_pages = impl_->pages->cached_pages();
     s.cache_bytes = impl_->pages->cached_bytes();
@@ -390,9 +557,9 @@ Result<uint64_t> Document::content_digest() const {
             digest = digest_of(digest_of(digest, uint64_t(key)), blob);
             return Status();
         }));
-        return reader.for_each_operator([&](uint64_t id, const std::string& json) {
-            digest = digest_of(digest_of(digest, id),
-                               {reinterpret_cast<const uint8_t*>(json.data()), json.size()});
+        return reader.for_each_operator([&](const PageStore::OperatorRow& row) {
+            digest = digest_of(digest_of(digest, row.id),
+                               {reinterpret_cast<const uint8_t*>(row.json.data()), row.json.size()});
             return Status();
         });
     });

@@ -105,14 +105,27 @@ class Document {
     [[nodiscard]] glm::ivec2 index_size_texels() const;
     [[nodiscard]] TexelRect fill_texels(const FillCommand& command) const;  // that it looks at
     // Enabled operators whose bounds in the map overlap, in order of evaluation. Valid while the ReadLock is
-    // held.
+    // held. Decals are read when first asked for (operator_nodes.h): what cannot be read is left out, and the
+    // log and `verify` say so.
     void operators_over_height(const WorldRect& rect, std::vector<const Operator*>& out) const;
     void operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const;
-    void operators_over_texture(const WorldRect& rect, std::vector<const Operator*>& out) const;
+    // Those that texels of this size show, or more; 0: all.
+    void operators_over_texture(const WorldRect& rect, double texel_m,
+                                std::vector<const Operator*>& out) const;
     void operators_over_cutout(const WorldRect& rect, std::vector<const Operator*>& out) const;
     // Those over the texture that look at the ground's heights: volumes and floods.
     void operators_over_ground(const WorldRect& rect, std::vector<const Operator*>& out) const;
-    [[nodiscard]] std::vector<Operator> operators() const;  // a copy, in order (outliner, info)
+    // A shape of every kind that is drawn somewhere, with the function it shows; nothing else of it counts.
+    [[nodiscard]] std::vector<OperatorShape> drawn_kinds() const;
+    [[nodiscard]] std::vector<Operator> operators() const;        // a copy of all, in order: reads them all
+    [[nodiscard]] std::vector<Operator> timed_operators() const;  // events and those with a life, in order
+    // Ids of those added, changed or removed since a revision; none: so many that `operators` has to be
+    // asked.
+    [[nodiscard]] std::optional<std::vector<uint64_t>> changed_operators(uint64_t since_revision) const;
+    // Forgets decals that nobody has looked at for long, when there are many: once a frame, without a
+    // ReadLock.
+    static constexpr size_t kMostLoadedOperators = 20'000;  // about 20 MB
+    void trim_operators(size_t most = kMostLoadedOperators);
     [[nodiscard]] std::optional<Operator> find_operator(uint64_t id) const;
     [[nodiscard]] ResolvedRoles roles() const;
     [[nodiscard]] std::vector<std::string> stamps() const;       // in the project's folder, sorted
@@ -129,6 +142,7 @@ class Document {
 
     struct Statistics {
         uint64_t height_pages = 0, index_pages = 0, database_bytes = 0, operators = 0, commands = 0;
+        uint64_t loaded_operators = 0, operator_nodes = 0, loaded_nodes = 0, node_reads = 0;
         uint64_t cached_pages = 0, cache_bytes = 0;
     };
     [[nodiscard]] Statistics statistics() const;

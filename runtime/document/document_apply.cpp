@@ -254,7 +254,7 @@ Status Document::Impl::compute(const AddOperatorCommand& command, Change& change
 }
 
 Status Document::Impl::compute(const EditOperatorCommand& command, Change& change) {
-    const Operator* op = operators.find(command.id);
+    const auto op = find_operator(command.id);
     if (!op) return error("there is no operator {}", command.id);
     LOAM_TRY(known_parts(command.shape));
     LOAM_TRY(known_function(command.shape, &op->shape));
@@ -268,7 +268,7 @@ Status Document::Impl::compute(const EditOperatorCommand& command, Change& chang
 }
 
 Status Document::Impl::compute(const ReorderCommand& command, Change& change) {
-    const Operator* op = operators.find(command.id);
+    const auto op = find_operator(command.id);
     if (!op) return error("there is no operator {}", command.id);
     if (op->order == command.order) return {};
     Operator moved = *op;
@@ -278,7 +278,7 @@ Status Document::Impl::compute(const ReorderCommand& command, Change& change) {
 }
 
 Status Document::Impl::compute(const SetOperatorCommand& command, Change& change) {
-    const Operator* op = operators.find(command.id);
+    const auto op = find_operator(command.id);
     if (!op) return error("there is no operator {}", command.id);
     if (op->enabled == command.enabled) return {};
     Operator switched = *op;
@@ -288,7 +288,7 @@ Status Document::Impl::compute(const SetOperatorCommand& command, Change& change
 }
 
 Status Document::Impl::compute(const RemoveOperatorCommand& command, Change& change) {
-    if (!operators.find(command.id)) return error("there is no operator {}", command.id);
+    if (!find_operator(command.id)) return error("there is no operator {}", command.id);
     change_operator(command.id, std::nullopt, change);
     return {};
 }
@@ -347,11 +347,29 @@ void Document::Impl::follow_heights(Dirt& dirt) const {
     }
 }
 
+void Document::Impl::wake_operators(const Change& change) {
+    for (const auto& [id, op] : change.operators)
+        if (!operators.find(id)) nodes->wake(id);
+}
+
 void Document::Impl::show_operators(Change& change) {
     for (const auto& [id, op] : change.operators) {
         operators.add_shown(id, change.dirt);
-        op ? operators.set(*op) : operators.remove(id);
-        operators.add_shown(id, change.dirt);
+        operators.remove(id);
+        if (const Operator* before = nodes->find_loaded(id)) append_dirt(change.dirt, *before);
+        nodes->remove(id);
+        if (op && node_of(*op)) {
+            nodes->set(*op);
+            append_dirt(change.dirt, *op);
+        } else if (op) {
+            operators.set(*op);
+            operators.add_shown(id, change.dirt);
+        }
+        changed_operators.push_back({revision + 1, id});
+    }
+    while (changed_operators.size() > kMostRemembered) {
+        forgotten_revision = changed_operators.front().revision;
+        changed_operators.pop_front();
     }
     follow_heights(change.dirt);
 }
@@ -377,6 +395,16 @@ Dirt Document::Impl::function_dirt(const std::vector<std::string>& names) {
         if (material && std::find(names.begin(), names.end(), material->function) != names.end())
             operators.add_shown(op.id, all);
     }
+    for (const std::string& name : names) {
+        const Status status = pages->with_store([&](PageStore& reader) {
+            return reader.for_each_operator_of_function(name, [&](const PageStore::OperatorRow& row) {
+                if (const auto op = parse_operator(row.id, row.json); op.ok()) append_dirt(all, *op);
+                return Status();
+            });
+        });
+        if (!status.ok())
+            log(LogLevel::error, "decals of {} are not drawn again: {}", name, status.message());
+    }
     merge_dirt(all, kMaxOperatorRects);
     Dirt dirt;  // what else they do does not change
     dirt.texture = std::move(all.texture);
@@ -401,6 +429,7 @@ Result<Dirt> Document::Impl::commit_change(Change& change, const Command& comman
     if (status.ok()) status = save_settings(change);
     if (status.ok()) {
         const Exclusive exclusive(*this);
+        wake_operators(change);
         status = store.commit();
         if (status.ok()) {
             if (change.settings) settings = std::move(*change.settings);
@@ -473,6 +502,7 @@ Result<Dirt> Document::Impl::swap_commands(size_t first, size_t end, bool applie
     if (status.ok()) status = save_settings(change);
     if (status.ok()) {
         const Exclusive exclusive(*this);
+        wake_operators(change);
         status = store.commit();
         if (status.ok()) {
             if (change.settings) settings = std::move(*change.settings);

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <atomic>
+#include <deque>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -18,6 +19,7 @@
 #include "runtime/document/function_library.h"
 #include "runtime/document/imagery.h"
 #include "runtime/document/journal_images.h"
+#include "runtime/document/operator_nodes.h"
 #include "runtime/document/operator_set.h"
 #include "runtime/document/page_edits.h"
 #include "runtime/document/paint.h"
@@ -29,6 +31,7 @@ namespace loam {
 
 inline constexpr size_t kPageCacheBytes = size_t(256) << 20;
 inline constexpr const char* kTimeMeta = "time_s";  // bits of a double
+inline constexpr size_t kMostRemembered = 16'384;   // changes of operators, for who lists them
 inline constexpr size_t kMaxStrokeRects = 8, kMaxOperatorRects = 64;
 
 // terrain.db's copy of what its pages were made with.
@@ -49,7 +52,8 @@ struct Document::Impl {
     WriterLock lock;
     PageStore store;  // the writing connection; not open in a read-only document
     std::unique_ptr<BasePages> pages;
-    OperatorSet operators;
+    OperatorSet operators;                 // those that are always held
+    std::unique_ptr<OperatorNodes> nodes;  // the others
     std::unique_ptr<StampLibrary> stamps;
     std::unique_ptr<FunctionLibrary> functions;
     std::shared_ptr<const Imagery> imagery;     // null: none, or its file could not be opened
@@ -57,6 +61,11 @@ struct Document::Impl {
     uint64_t next_operator = 1, next_sequence = 1, next_group = 1;
     PageBalance page_count;
     std::atomic<uint64_t> revision{1};
+    struct Changed {
+        uint64_t revision, id;
+    };
+    std::deque<Changed> changed_operators;  // ascending
+    uint64_t forgotten_revision = 1;        // up to which changes are not in the list
     mutable std::shared_mutex mutex;  // exclusive while a change becomes visible
     // Held by a writer that waits for `mutex`, so that readers who come one after another cannot keep it out.
     // Readers wait here for a while only: a thread that already holds a ReadLock must get its second one.
@@ -71,6 +80,13 @@ struct Document::Impl {
     };
 
     Status load();
+    Status load_operators(PageStore& reader);
+    // Rows of a database of the first format, which were all read, are given their nodes.
+    Status give_nodes();
+    [[nodiscard]] Result<Operator> read_operator(const PageStore::OperatorRow& row);
+    [[nodiscard]] std::vector<Operator> read_node(int64_t node);
+    // A copy, whether it is held or not.
+    [[nodiscard]] std::optional<Operator> find_operator(uint64_t id);
     Status may_write() const;
     [[nodiscard]] size_t applied_count() const;
 
@@ -123,7 +139,9 @@ struct Document::Impl {
     // Where decals show the functions.
     Dirt function_dirt(const std::vector<std::string>& names);
     Status write_change(Change& change, const JournalRow& row, const PageBalance& before);
-    // Under the exclusive lock: the operators' new states, and where they show or did.
+    // Under the exclusive lock, before the commit: what is about to change is read from what was.
+    void wake_operators(const Change& change);
+    // Under the exclusive lock, after it: the operators' new states, and where they show or did.
     void show_operators(Change& change);
     Result<Dirt> commit_change(Change& change, const Command& command);
     // Swaps the rows of the journal heads [first, end), the direction that `applied` names, in one

@@ -2,6 +2,7 @@
 
 #include "runtime/document/byte_stream.h"
 #include "runtime/document/operator_json.h"
+#include "runtime/document/operator_nodes.h"
 #include "runtime/document/transitions.h"
 
 namespace loam {
@@ -25,13 +26,16 @@ Status swap_operator(PageStore& store, RowImage& image) {
     const uint64_t id = uint64_t(image.key);
     auto current = store.read_operator(id);
     if (!current.ok()) return current.error();
-    if (image.bytes)
-        LOAM_TRY(store.write_operator(
-            id, {reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size()}));
-    else
+    if (image.bytes) {
+        const std::string_view json(reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size());
+        const auto op = parse_operator(id, json);
+        if (!op.ok()) return error("the journal: {}", op.message());
+        LOAM_TRY(store.write_operator(id, json, node_of(*op)));
+    } else {
         LOAM_TRY(store.erase_operator(id));
+    }
     image.bytes.reset();
-    if (current->has_value()) image.bytes.emplace((*current)->begin(), (*current)->end());
+    if (current->has_value()) image.bytes.emplace((*current)->json.begin(), (*current)->json.end());
     return {};
 }
 

@@ -464,7 +464,9 @@ Result<Operator> parse_operator(uint64_t id, std::string_view text) {
         fields.finish();
         return result;
     });
-    if (!op.ok()) return op;
+    // What is no JSON at all does not say whose it is.
+    if (!op.ok())
+        return op.message().starts_with("operator ") ? op : error("operator {}: {}", id, op.message());
     Status status = check_shape(op->shape);
     if (status.ok()) status = check_life(op->life);
     if (!status.ok()) return error("operator {}: {}", id, status.message());

@@ -52,7 +52,7 @@ void OperatorIndex::remove(const Operator* op, const WorldRect& bounds) {
     if (cells.empty()) levels_.erase(level);
 }
 
-void OperatorIndex::query(const WorldRect& rect, std::vector<const Operator*>& out) const {
+void OperatorIndex::query(const WorldRect& rect, std::vector<const Operator*>& out, double texel_m) const {
     out.clear();
     if (rect.empty()) return;
     const auto visit = [&](const std::vector<Entry>& cell) {
@@ -61,6 +61,9 @@ void OperatorIndex::query(const WorldRect& rect, std::vector<const Operator*>& o
     };
     for (const auto& [exponent, level] : levels_) {
         const double side = side_of(exponent);
+        // A volume on its side is drawn up to 1.5 times as wide as its bounds; half a texel is too little to
+        // show.
+        if (4 * side <= texel_m) continue;
         const int64_t x0 = int64_t(cell_of(rect.min_x, side)) - 1, x1 = cell_of(rect.max_x, side);
         const int64_t y0 = int64_t(cell_of(rect.min_y, side)) - 1, y1 = cell_of(rect.max_y, side);
         // A rectangle of more cells than there are: look at those there are.

@@ -20,7 +20,9 @@ class OperatorIndex {
     void add(const Operator* op, const WorldRect& bounds);
     void remove(const Operator* op, const WorldRect& bounds);
     // Appends nothing twice; ascending (order, id, part); enabled operators only. Clears `out` first.
-    void query(const WorldRect& rect, std::vector<const Operator*>& out) const;
+    // texel_m: of what is drawn, all that texels of this size show is there; what they do not show may be
+    // left out.
+    void query(const WorldRect& rect, std::vector<const Operator*>& out, double texel_m = 0) const;
 
   private:
     struct Entry {

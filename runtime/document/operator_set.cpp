@@ -29,19 +29,6 @@ bool looks_at_ground(const Operator& op) {
     return std::holds_alternative<VolumeDecal>(op.shape) || std::holds_alternative<Flood>(op.shape);
 }
 
-void append(std::vector<WorldRect>& to, const std::vector<WorldRect>& rects) {
-    to.insert(to.end(), rects.begin(), rects.end());
-}
-
-void add_dirt(const Operator& op, Dirt& dirt) {
-    if (!op.enabled) return;
-    append(dirt.height, op.height_rects());
-    append(dirt.index, op.index_rects());
-    append(dirt.texture, op.texture_rects());
-    append(dirt.cutout, op.cutout_rects());
-    dirt.texture_size_m = std::max(dirt.texture_size_m, op.texture_size_m());
-}
-
 // From one state to the next. A crater that only cooled has the ground it had.
 void add_change(const Operator* before, const Operator* after, bool shows_heat, Dirt& dirt) {
     const Crater* crater = before && after ? std::get_if<Crater>(&before->shape) : nullptr;
@@ -49,13 +36,14 @@ void add_change(const Operator* before, const Operator* after, bool shows_heat, 
         const Crater& now = std::get<Crater>(after->shape);
         if (crater->depth_m == now.depth_m && crater->age == now.age && crater->strength == now.strength) {
             if (!after->enabled || !shows_heat) return;
-            append(dirt.texture, after->texture_rects());
+            const std::vector<WorldRect> rects = after->texture_rects();
+            dirt.texture.insert(dirt.texture.end(), rects.begin(), rects.end());
             dirt.texture_size_m = std::max(dirt.texture_size_m, after->texture_size_m());
             return;
         }
     }
-    if (before) add_dirt(*before, dirt);
-    if (after) add_dirt(*after, dirt);
+    if (before) append_dirt(dirt, *before);
+    if (after) append_dirt(dirt, *after);
 }
 
 }  // namespace
@@ -156,8 +144,8 @@ void OperatorSet::add_shown(uint64_t id, Dirt& dirt) const {
     if (found == by_id_.end()) return;
     const Held& held = *found->second;
     for (const Shown& shown : held.shown)
-        if (const Operator* op = shown.op()) add_dirt(*op, dirt);
-    if (held.shown.empty()) add_dirt(held.op, dirt);
+        if (const Operator* op = shown.op()) append_dirt(dirt, *op);
+    if (held.shown.empty()) append_dirt(dirt, held.op);
 }
 
 const Operator* OperatorSet::find(uint64_t id) const {
@@ -175,16 +163,31 @@ OperatorSet::Cost OperatorSet::cost_of(uint64_t id) const {
     return cost;
 }
 
-std::vector<Operator> OperatorSet::sorted() const {
-    std::vector<const Operator*> order;
-    order.reserve(by_id_.size());
-    for (const auto& [id, held] : by_id_) order.push_back(&held->op);
+namespace {
+
+std::vector<Operator> copies_in_order(std::vector<const Operator*> order) {
     std::sort(order.begin(), order.end(),
               [](const Operator* a, const Operator* b) { return evaluated_before(*a, *b); });
     std::vector<Operator> all;
     all.reserve(order.size());
     for (const Operator* op : order) all.push_back(*op);
     return all;
+}
+
+}  // namespace
+
+std::vector<Operator> OperatorSet::sorted() const {
+    std::vector<const Operator*> all;
+    all.reserve(by_id_.size());
+    for (const auto& [id, held] : by_id_) all.push_back(&held->op);
+    return copies_in_order(std::move(all));
+}
+
+std::vector<Operator> OperatorSet::timed() const {
+    std::vector<const Operator*> timed;
+    for (const auto& [id, held] : by_id_)
+        if (!held->shown.empty() || std::holds_alternative<Event>(held->op.shape)) timed.push_back(&held->op);
+    return copies_in_order(std::move(timed));
 }
 
 }  // namespace loam

@@ -27,6 +27,7 @@ class OperatorSet {
     [[nodiscard]] const Operator* find(uint64_t id) const;
     [[nodiscard]] size_t size() const { return by_id_.size(); }
     [[nodiscard]] std::vector<Operator> sorted() const;  // ascending (order, id)
+    [[nodiscard]] std::vector<Operator> timed() const;   // those that change with the time, the same way
 
     // Whether the map shows the heat of craters (it has a channel for it): else one that cools changes
     // nothing.

@@ -217,12 +217,19 @@ class Verifier {
     Status check_operators() {
         const auto next = store_.read_meta("next_operator");
         if (!next.ok()) return next.error();
-        return store_.for_each_operator([&](uint64_t id, const std::string& json) {
-            const auto op = parse_operator(id, json);
+        return store_.for_each_operator([&](const PageStore::OperatorRow& row) {
+            const uint64_t id = row.id;
+            const auto op = parse_operator(id, row.json);
             if (!op.ok())
                 fail("{}", op.message());
             else if (int64_t(id) >= next->value_or(1))
                 fail("operator {} has an id that has not been given out yet", id);
+            // None of an older format's have a node before it is opened for writing.
+            if (op.ok() && row.node && (!node_of(*op) || node_of(*op)->key != *row.node))
+                fail(
+                    "operator {} is kept at another place than it has: move it and undo that, or restore "
+                    "terrain.db",
+                    id);
             const DecalMaterial* material = op.ok() ? material_of(op->shape) : nullptr;
             if (material && !material->layer.empty() && !has_layer(material->layer))
                 fail("operator {} is made of the layer \"{}\", which the project does not have", id,

@@ -469,6 +469,7 @@ Status Renderer::render(gpu::FrameRing& ring, gpu::Commands& commands, const Cam
         // In motion and work frames are waited for.
         .goal_ms = settings.at_rest ? 0.0 : kFrameGoal_ms,
         .last_frame_ms = last_frame_ms};
+    r.document.trim_operators();
     r.textures.request_inputs(view, settings.shading == Shading::virtual_texture);
     if (settings.shading != Shading::virtual_texture) {
         r.request_direct_pages(view.pixels_per_radian, settings.footprint_bias);

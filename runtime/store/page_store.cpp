@@ -10,7 +10,7 @@ namespace loam {
 namespace {
 
 constexpr int64_t kApplicationId = 0x4C6F616D;  // "Loam"
-constexpr int64_t kVersion = 1;
+constexpr int64_t kVersion = 2, kVersionWithoutNodes = 1;
 
 // 8 KiB pages: most blobs (1–6 KiB) fit one without an overflow chain, and a small command rewrites few of
 // them.
@@ -20,12 +20,27 @@ PRAGMA journal_mode = WAL;
 PRAGMA application_id = 0x4C6F616D;
 BEGIN IMMEDIATE;
 CREATE TABLE page (key INTEGER PRIMARY KEY, blob BLOB NOT NULL);
-CREATE TABLE operator (id INTEGER PRIMARY KEY, json TEXT NOT NULL);
+CREATE TABLE operator (id INTEGER PRIMARY KEY, json TEXT NOT NULL, node INTEGER, function TEXT);
+CREATE INDEX operator_node ON operator (node, function);
 CREATE TABLE journal (sequence INTEGER PRIMARY KEY, grp INTEGER NOT NULL, applied INTEGER NOT NULL,
                       json TEXT NOT NULL, images BLOB NOT NULL, dirt BLOB NOT NULL);
 CREATE TABLE meta (name TEXT PRIMARY KEY, value INTEGER NOT NULL) WITHOUT ROWID;
-PRAGMA user_version = 1;
+PRAGMA user_version = 2;
 COMMIT;
+)";
+
+constexpr const char* kGiveNodes = R"(
+BEGIN IMMEDIATE;
+ALTER TABLE operator ADD COLUMN node INTEGER;
+ALTER TABLE operator ADD COLUMN function TEXT;
+CREATE INDEX operator_node ON operator (node, function);
+PRAGMA user_version = 2;
+COMMIT;
+)";
+
+// The same to the eye of a connection that may not write.
+constexpr const char* kShowNoNodes = R"(
+CREATE TEMP VIEW operator AS SELECT id, json, NULL AS node, NULL AS function FROM main.operator;
 )";
 
 constexpr const char* kConfigure = R"(
@@ -40,7 +55,8 @@ PRAGMA cache_size = -16384;
 // Of 8 KiB: 16 MB of log. Checkpoints are the only time that writing waits for the disk, about 50 ms.
 constexpr int kDueFrames = 2000;
 
-Status check_identity(Database& database) {
+// The database's format.
+Result<int64_t> check_identity(Database& database) {
     const auto application = database.query_integer("PRAGMA application_id");
     if (!application.ok()) return application.error();
     if (*application != kApplicationId)
@@ -51,18 +67,20 @@ Status check_identity(Database& database) {
     if (*version > kVersion)
         return error("{} was written by a newer Loam (format {}, this one reads up to {}); update Loam",
                      database.file().string(), *version, kVersion);
-    if (*version != kVersion)
+    if (*version != kVersion && *version != kVersionWithoutNodes)
         return error("{} has the unknown format {}, {} expected", database.file().string(), *version,
                      kVersion);
-    return {};
+    return *version;
 }
 
 // Walks the rows of a statement of its own.
-Status for_each_row(Database& database, std::string_view sql, int64_t parameter,
-                    const std::function<Status(Statement&)>& visit) {
+template <typename... Parameters>
+Status for_each_row(Database& database, std::string_view sql, const std::function<Status(Statement&)>& visit,
+                    const Parameters&... parameters) {
     auto statement = database.prepare(sql);
     if (!statement.ok()) return statement.error();
-    if (sql.find('?') != std::string_view::npos) statement->bind(1, parameter);
+    int parameter = 0;
+    (statement->bind(++parameter, parameters), ...);
     while (true) {
         const auto row = statement->step();
         if (!row.ok()) return row.error();
@@ -85,14 +103,17 @@ Result<PageStore> PageStore::open(const std::filesystem::path& file, DatabaseMod
     PageStore store;
     store.database_ = std::move(database).value();
     if (mode == DatabaseMode::create) LOAM_TRY(store.database_.execute(kSetUp));
-    LOAM_TRY(check_identity(store.database_));
+    const auto version = check_identity(store.database_);
+    if (!version.ok()) return version.error();
     LOAM_TRY(store.database_.execute(kConfigure));
-    LOAM_TRY(store.prepare_all());
+    const bool without_nodes = *version == kVersionWithoutNodes, reads = mode == DatabaseMode::read_only;
+    if (without_nodes) LOAM_TRY(store.database_.execute(reads ? kShowNoNodes : kGiveNodes));
+    LOAM_TRY(store.prepare_all(!(without_nodes && reads)));  // a view cannot be written
     store.database_.count_wal_frames();
     return store;
 }
 
-Status PageStore::prepare_all() {
+Status PageStore::prepare_all(bool writes_operators) {
     const std::pair<Statement*, const char*> all[] = {
         {&begin_, "BEGIN IMMEDIATE"},
         {&commit_, "COMMIT"},
@@ -100,10 +121,12 @@ Status PageStore::prepare_all() {
         {&read_page_, "SELECT blob FROM page WHERE key = ?"},
         {&write_page_, "INSERT INTO page VALUES (?, ?) ON CONFLICT (key) DO UPDATE SET blob = excluded.blob"},
         {&erase_page_, "DELETE FROM page WHERE key = ?"},
-        {&read_operator_, "SELECT json FROM operator WHERE id = ?"},
-        {&write_operator_,
-         "INSERT INTO operator VALUES (?, ?) ON CONFLICT (id) DO UPDATE SET json = excluded.json"},
-        {&erase_operator_, "DELETE FROM operator WHERE id = ?"},
+        {&read_operator_, "SELECT id, json, node FROM operator WHERE id = ?"},
+        {&read_node_, "SELECT id, json, node FROM operator WHERE node = ? ORDER BY id"},
+        {writes_operators ? &write_operator_ : nullptr,
+         "INSERT INTO operator VALUES (?, ?, ?, ?) ON CONFLICT (id) DO UPDATE SET json = excluded.json, "
+         "node = excluded.node, function = excluded.function"},
+        {writes_operators ? &erase_operator_ : nullptr, "DELETE FROM operator WHERE id = ?"},
         {&write_journal_, "INSERT OR REPLACE INTO journal VALUES (?, ?, ?, ?, ?, ?)"},
         {&read_journal_, "SELECT grp, applied, json, images, dirt FROM journal WHERE sequence = ?"},
         {&erase_undone_, "DELETE FROM journal WHERE applied = 0"},
@@ -112,6 +135,7 @@ Status PageStore::prepare_all() {
          "INSERT INTO meta VALUES (?, ?) ON CONFLICT (name) DO UPDATE SET value = excluded.value"},
     };
     for (const auto& [statement, sql] : all) {
+        if (!statement) continue;
         auto prepared = database_.prepare(sql);
         if (!prepared.ok()) return prepared.error();
         *statement = std::move(prepared).value();
@@ -170,7 +194,7 @@ Status PageStore::erase_page(int64_t key) {
 }
 
 Status PageStore::for_each_page(const std::function<Status(int64_t, std::span<const uint8_t>)>& visit) {
-    return for_each_row(database_, "SELECT key, blob FROM page ORDER BY key", 0,
+    return for_each_row(database_, "SELECT key, blob FROM page ORDER BY key",
                         [&](Statement& row) { return visit(row.integer(0), row.blob(1)); });
 }
 
@@ -180,18 +204,36 @@ Result<int64_t> PageStore::page_count(BaseMap map) {
         fmt::format("SELECT count(*) FROM page WHERE key >= {} AND key < {}", first.packed(), end.packed()));
 }
 
-Result<std::optional<std::string>> PageStore::read_operator(uint64_t id) {
+namespace {
+
+PageStore::OperatorRow operator_row(const Statement& row) {
+    PageStore::OperatorRow result{uint64_t(row.integer(0)), row.text(1), std::nullopt};
+    if (!row.is_null(2)) result.node = row.integer(2);
+    return result;
+}
+
+}  // namespace
+
+Result<std::optional<PageStore::OperatorRow>> PageStore::read_operator(uint64_t id) {
     const ResetOnExit reset{read_operator_};
     read_operator_.bind(1, int64_t(id));
     const auto row = read_operator_.step();
     if (!row.ok()) return row.error();
-    if (!*row) return std::optional<std::string>();
-    return std::optional(read_operator_.text(0));
+    if (!*row) return std::optional<OperatorRow>();
+    return std::optional(operator_row(read_operator_));
 }
 
-Status PageStore::write_operator(uint64_t id, std::string_view json) {
+Status PageStore::write_operator(uint64_t id, std::string_view json,
+                                 const std::optional<OperatorNode>& node) {
     write_operator_.bind(1, int64_t(id));
     write_operator_.bind(2, json);
+    if (node) {
+        write_operator_.bind(3, node->key);
+        write_operator_.bind(4, std::string_view(node->function));
+    } else {
+        write_operator_.bind_null(3);
+        write_operator_.bind_null(4);
+    }
     return write_operator_.run();
 }
 
@@ -200,9 +242,40 @@ Status PageStore::erase_operator(uint64_t id) {
     return erase_operator_.run();
 }
 
-Status PageStore::for_each_operator(const std::function<Status(uint64_t, const std::string&)>& visit) {
-    return for_each_row(database_, "SELECT id, json FROM operator ORDER BY id", 0,
-                        [&](Statement& row) { return visit(uint64_t(row.integer(0)), row.text(1)); });
+Status PageStore::for_each_operator(const OperatorVisit& visit) {
+    return for_each_row(database_, "SELECT id, json, node FROM operator ORDER BY id",
+                        [&](Statement& row) { return visit(operator_row(row)); });
+}
+
+Status PageStore::for_each_operator_without_node(const OperatorVisit& visit) {
+    return for_each_row(database_, "SELECT id, json, node FROM operator WHERE node IS NULL ORDER BY id",
+                        [&](Statement& row) { return visit(operator_row(row)); });
+}
+
+Status PageStore::for_each_operator_of_node(int64_t node, const OperatorVisit& visit) {
+    const ResetOnExit reset{read_node_};
+    read_node_.bind(1, node);
+    while (true) {
+        const auto row = read_node_.step();
+        if (!row.ok()) return row.error();
+        if (!*row) return {};
+        LOAM_TRY(visit(operator_row(read_node_)));
+    }
+}
+
+Status PageStore::for_each_operator_of_function(const std::string& function, const OperatorVisit& visit) {
+    return for_each_row(
+        database_, "SELECT id, json, node FROM operator WHERE node IS NOT NULL AND function = ? ORDER BY id",
+        [&](Statement& row) { return visit(operator_row(row)); }, std::string_view(function));
+}
+
+Status PageStore::for_each_node(const std::function<Status(const OperatorNode&, uint64_t)>& visit) {
+    return for_each_row(database_,
+                        "SELECT node, function, count(*) FROM operator WHERE node IS NOT NULL "
+                        "GROUP BY node, function",
+                        [&](Statement& row) {
+                            return visit({row.integer(0), row.text(1)}, uint64_t(row.integer(2)));
+                        });
 }
 
 Status PageStore::write_journal(const JournalRow& row) {
@@ -241,7 +314,7 @@ Status PageStore::erase_undone() {
 Result<std::vector<PageStore::JournalHead>> PageStore::journal_heads() {
     std::vector<JournalHead> heads;
     const Status status = for_each_row(
-        database_, "SELECT sequence, grp, applied FROM journal ORDER BY sequence", 0, [&](Statement& row) {
+        database_, "SELECT sequence, grp, applied FROM journal ORDER BY sequence", [&](Statement& row) {
             heads.push_back({uint64_t(row.integer(0)), uint64_t(row.integer(1)), row.integer(2) != 0});
             return Status();
         });
@@ -256,20 +329,23 @@ Status PageStore::for_each_journal(uint64_t first, JournalColumns columns,
         all ? "SELECT sequence, grp, applied, json, images, dirt FROM journal WHERE sequence >= ? ORDER BY "
               "sequence"
             : "SELECT sequence, grp, applied, json FROM journal WHERE sequence >= ? ORDER BY sequence";
-    return for_each_row(database_, sql, int64_t(first), [&](Statement& from) {
-        JournalRow row{.sequence = uint64_t(from.integer(0)),
-                       .group = uint64_t(from.integer(1)),
-                       .applied = from.integer(2) != 0,
-                       .json = from.text(3),
-                       .images = {},
-                       .dirt = {}};
-        if (all) {
-            const auto images = from.blob(4), dirt = from.blob(5);
-            row.images.assign(images.begin(), images.end());
-            row.dirt.assign(dirt.begin(), dirt.end());
-        }
-        return visit(row);
-    });
+    return for_each_row(
+        database_, sql,
+        [&](Statement& from) {
+            JournalRow row{.sequence = uint64_t(from.integer(0)),
+                           .group = uint64_t(from.integer(1)),
+                           .applied = from.integer(2) != 0,
+                           .json = from.text(3),
+                           .images = {},
+                           .dirt = {}};
+            if (all) {
+                const auto images = from.blob(4), dirt = from.blob(5);
+                row.images.assign(images.begin(), images.end());
+                row.dirt.assign(dirt.begin(), dirt.end());
+            }
+            return visit(row);
+        },
+        int64_t(first));
 }
 
 Result<std::optional<int64_t>> PageStore::read_meta(std::string_view name) {
@@ -298,7 +374,7 @@ Status PageStore::checkpoint_when_due() {
 
 Result<std::vector<std::string>> PageStore::quick_check() {
     std::vector<std::string> faults;
-    const Status status = for_each_row(database_, "PRAGMA quick_check", 0, [&](Statement& row) {
+    const Status status = for_each_row(database_, "PRAGMA quick_check", [&](Statement& row) {
         if (row.text(0) != "ok") faults.push_back(row.text(0));
         return Status();
     });

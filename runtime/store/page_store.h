@@ -4,11 +4,15 @@
 // | table | columns |
 // | --- | --- |
 // | page | key INTEGER PRIMARY KEY (PageKey), blob |
-// | operator | id INTEGER PRIMARY KEY, json |
+// | operator | id INTEGER PRIMARY KEY, json, node (NULL: none), function |
 // | journal | sequence INTEGER PRIMARY KEY, grp, applied (0 or 1), json, images, dirt |
 // | meta | name TEXT PRIMARY KEY, value (an integer) |
 //
 // PageKey, packed: | bits 52–57 map | 46–51 mip | 23–45 y | 0–22 x |
+//
+// `node` and `function` let the document read operators a few at a time (document/operator_nodes.h). Format 1
+// had neither: its database is given them when it is opened for writing, and read as if all were NULL when it
+// is not.
 //
 // WAL with synchronous = NORMAL: a killed process loses nothing that was committed; a power cut may lose the
 // last commits but never leaves half of one. Foreign keys are off, as there are none. A connection is used by
@@ -69,10 +73,27 @@ class PageStore {
     Status for_each_page(const std::function<Status(int64_t key, std::span<const uint8_t> blob)>& visit);
     Result<int64_t> page_count(BaseMap map);
 
-    Result<std::optional<std::string>> read_operator(uint64_t id);
-    Status write_operator(uint64_t id, std::string_view json);
+    // Where an operator is found again that is not read at opening, and the function that it shows.
+    struct OperatorNode {
+        int64_t key = 0;
+        std::string function;
+        bool operator==(const OperatorNode&) const = default;
+    };
+    struct OperatorRow {
+        uint64_t id = 0;
+        std::string json;
+        std::optional<int64_t> node;
+    };
+    using OperatorVisit = std::function<Status(const OperatorRow&)>;
+    Result<std::optional<OperatorRow>> read_operator(uint64_t id);
+    Status write_operator(uint64_t id, std::string_view json, const std::optional<OperatorNode>& node);
     Status erase_operator(uint64_t id);
-    Status for_each_operator(const std::function<Status(uint64_t id, const std::string& json)>& visit);
+    Status for_each_operator(const OperatorVisit& visit);  // ascending, as all of these
+    Status for_each_operator_without_node(const OperatorVisit& visit);
+    Status for_each_operator_of_node(int64_t node, const OperatorVisit& visit);
+    Status for_each_operator_of_function(const std::string& function, const OperatorVisit& visit);
+    // How many operators of a function a node has.
+    Status for_each_node(const std::function<Status(const OperatorNode& node, uint64_t operators)>& visit);
 
     Status write_journal(const JournalRow& row);  // inserts or replaces
     Result<JournalRow> read_journal(uint64_t sequence);
@@ -98,12 +119,13 @@ class PageStore {
     [[nodiscard]] uint64_t file_bytes() const;       // database and WAL
 
   private:
-    Status prepare_all();
+    Status prepare_all(bool writes_operators);
 
     Database database_;
     bool in_transaction_ = false;
     Statement begin_, commit_, rollback_;
-    Statement read_page_, write_page_, erase_page_, read_operator_, write_operator_, erase_operator_;
+    Statement read_page_, write_page_, erase_page_, read_operator_, read_node_, write_operator_,
+        erase_operator_;
     Statement write_journal_, read_journal_, erase_undone_, read_meta_, write_meta_;
 };
 

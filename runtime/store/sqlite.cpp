@@ -87,6 +87,10 @@ void Statement::bind(int parameter, std::span<const uint8_t> blob) {
                "bad parameter of a statement");
 }
 
+void Statement::bind_null(int parameter) {
+    LOAM_CHECK(sqlite3_bind_null(handle_.get(), parameter) == SQLITE_OK, "bad parameter of a statement");
+}
+
 Result<bool> Statement::step() {
     const int code = sqlite3_step(handle_.get());
     if (code == SQLITE_ROW) return true;
@@ -109,6 +113,9 @@ Status Statement::run() {
     return status;
 }
 
+bool Statement::is_null(int column) const {
+    return sqlite3_column_type(handle_.get(), column) == SQLITE_NULL;
+}
 int64_t Statement::integer(int column) const {
     return sqlite3_column_int64(handle_.get(), column);
 }

@@ -24,13 +24,15 @@ class Statement {
     void bind(int parameter, double value);
     void bind(int parameter, std::string_view text);
     void bind(int parameter, std::span<const uint8_t> blob);
+    void bind_null(int parameter);
     // True: a row is ready to be read. False: done. Call reset() before binding again.
     Result<bool> step();
     void reset();
     // Binds nothing more, runs to the end and resets.
     Status run();
 
-    [[nodiscard]] int64_t integer(int column) const;
+    [[nodiscard]] bool is_null(int column) const;
+    [[nodiscard]] int64_t integer(int column) const;  // NULL: 0
     [[nodiscard]] double real(int column) const;
     [[nodiscard]] std::string text(int column) const;
     [[nodiscard]] std::span<const uint8_t> blob(int column) const;  // valid until the next step or reset

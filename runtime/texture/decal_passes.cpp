@@ -134,18 +134,13 @@ const gpu::Pipeline* DecalPasses::function_pipeline(const Document& document, co
 Status DecalPasses::warm_up(const Document& document, const LayerSet& layers) {
     for (const DecalKind kind : {DecalKind::crater, DecalKind::footprint})
         if (auto made = pipeline(kind, 0, layers); !made.ok()) return made.error();
-    const auto lock = document.read_lock();
-    std::vector<const Operator*> operators;
-    constexpr double kEverywhere_m = 1.0e7;
-    document.operators_over_texture({-kEverywhere_m, -kEverywhere_m, kEverywhere_m, kEverywhere_m},
-                                    operators);
-    for (const Operator* op : operators) {
-        const DecalKind kind = std::holds_alternative<Crater>(op->shape)         ? DecalKind::crater
-                               : std::holds_alternative<Footprint>(op->shape)    ? DecalKind::footprint
-                               : std::holds_alternative<TerrainDecal>(op->shape) ? DecalKind::terrain
-                               : std::holds_alternative<SplineDecal>(op->shape)  ? DecalKind::spline
-                                                                                 : DecalKind::volume;
-        const DecalMaterial* material = material_of(op->shape);
+    for (const OperatorShape& shape : document.drawn_kinds()) {
+        const DecalKind kind = std::holds_alternative<Crater>(shape)         ? DecalKind::crater
+                               : std::holds_alternative<Footprint>(shape)    ? DecalKind::footprint
+                               : std::holds_alternative<TerrainDecal>(shape) ? DecalKind::terrain
+                               : std::holds_alternative<SplineDecal>(shape)  ? DecalKind::spline
+                                                                             : DecalKind::volume;
+        const DecalMaterial* material = material_of(shape);
         if (!material || material->function.empty()) {
             if (auto made = pipeline(kind, 0, layers); !made.ok()) return made.error();
         } else if (const auto function = document.functions().shown(material->function)) {

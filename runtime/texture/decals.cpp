@@ -335,7 +335,7 @@ TexelRect page_texels(const TextureLayout& layout, const PageId& page, const Wor
 void add_decals(const Document& document, const LayerSet& layers, LayerTier tier, const TextureLayout& layout,
                 const PageId& page, const TexelRect& rect, glm::ivec2 scratch_min, DecalList& list) {
     std::vector<const Operator*> operators;
-    document.operators_over_texture(world_of(layout, page, rect), operators);
+    document.operators_over_texture(world_of(layout, page, rect), layout.texel_m(page), operators);
     const PageDecals decals{
         document, layers, tier, layout, page, rect, scratch_min - glm::ivec2(rect.x0, rect.y0), list};
     for (const Operator* op : operators) visit_decal(decals, *op);
@@ -346,7 +346,7 @@ std::vector<DecalTexture> decal_textures(const Document& document, const LayerSe
                                          const TexelRect& rect) {
     const auto lock = document.read_lock();
     std::vector<const Operator*> operators;
-    document.operators_over_texture(world_of(layout, page, rect), operators);
+    document.operators_over_texture(world_of(layout, page, rect), layout.texel_m(page), operators);
     std::vector<DecalTexture> textures;
     for (const Operator* op : operators)
         std::visit(
@@ -365,7 +365,7 @@ DirectDecals direct_decals(const Document& document, const LayerSet& layers, con
     const auto lock = document.read_lock();
     std::vector<const Operator*> found, here;
     for (const WorldRect& rect : view.ground) {
-        document.operators_over_texture(rect, here);
+        document.operators_over_texture(rect, 0, here);
         found.insert(found.end(), here.begin(), here.end());
     }
     std::sort(found.begin(), found.end(), [](const Operator* a, const Operator* b) {

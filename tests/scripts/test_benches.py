@@ -36,7 +36,7 @@ def test_edits(plain):
 
 
 def test_events(plain):
-    (_, changes), (_, rates), (_, elsewhere), (_, memory), (_, heights), (_, splines), (_, kept) = bench(
+    (_, changes), (_, rates), (_, elsewhere), (_, spread), (_, memory), (_, heights), (_, splines), (_, kept) = bench(
         "events", plain, "--size", "160x90")
     by_name = {row["change"]: row for row in changes}
     assert all(row["texture texels"] > 0 for row in changes)
@@ -44,6 +44,9 @@ def test_events(plain):
     assert [row["prints a second"] for row in rates] == [0, 1, 100, 10000]
     assert rates[-1]["prints waiting"] > 1000 and 0 < rates[-1]["prints on the map"] < 2000, "a frame lays what it can"
     assert [row["operators elsewhere"] for row in elsewhere] == [15, 15000]
+    few, many = spread
+    assert (few["decals"], many["decals"]) == (10, 10000)
+    assert many["read for it"] < 2000 and many["of nodes"] < many["nodes"] / 2, "only what somebody looks at is read"
     assert all(row["stored bytes"] < 300 for row in memory)
     assert [row["parts"] for row in memory][:3] == [1, 1000, 1200]
     worst = {row["kept as"]: row["worst mm"] for row in heights}

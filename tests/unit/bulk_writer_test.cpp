@@ -173,7 +173,7 @@ TEST(verify, finds_what_is_wrong) {
     expect_fault("lies outside the map");
     with_store([&](PageStore& store) {
         ASSERT_TRUE(store.erase_page(PageKey{BaseMap::height, 0, 900, 1}.packed()).ok());
-        ASSERT_TRUE(store.write_operator(1, "{\"kind\":\"volcano\"").ok());
+        ASSERT_TRUE(store.write_operator(1, "{\"kind\":\"volcano\"", std::nullopt).ok());
     });
     expect_fault("not valid JSON");
     with_store([&](PageStore& store) {
