@@ -251,7 +251,7 @@ Result<BenchTable> decals_all_over(const BenchRequest& request) {
                 TerrainDecal decal{.x_m = map.min_x + map.width() * std::fmod(0.61803 * i, 1.0),
                                    .y_m = map.min_y + map.height() * std::fmod(0.32471 * i, 1.0)};
                 decal.half_m = glm::dvec2(0.5 * std::exp2(i % 4));
-                decal.heading_rad = i;
+                decal.heading_rad = i % 6;
                 decal.material.colour = {0.5, 0.3, 0.2};
                 if (auto dirt = (*document)->apply({AddOperatorCommand{decal, {}}}); !dirt)
                     return dirt.error();

@@ -119,6 +119,8 @@ void selected_decal_properties(App& app, ui::Ui& ui) {
         any = true;
     }
     any |= function_properties(app, ui, changed.function, changed.parameters);
+    auto* decal = std::get_if<TerrainDecal>(&shape);
+    if (decal && ui::slider(ui, "Displacement", decal->displacement_m, kDisplacement)) any = true;
     if (material->function.empty() && !changed.function.empty()) {  // its own colours, not those of a layer
         changed.layer.clear();
         changed.colour = {1, 1, 1};

@@ -6,6 +6,9 @@
 namespace loam::window {
 
 inline constexpr std::string_view kFillDialog = "Filling the map";
+// Of a terrain decal.
+inline constexpr ui::SliderDesc kDisplacement{
+    .min = -3, .max = 3, .decimals = 2, .unit = "m", .tooltip = "Raises the ground under it, or lowers it"};
 
 void build_menus(App& app, ui::Ui& ui);
 void build_tool_bar(App& app, ui::Ui& ui);

@@ -102,6 +102,7 @@ void decal_properties(ui::Ui& ui, App& app) {
     ui::slider(ui, "Stretch", decal.stretch, {.min = 0.1, .max = 10, .decimals = 2, .logarithmic = true});
     share_slider(ui, "Rough edge", decal.rough);
     ui::checkbox(ui, "Round", decal.ellipse);
+    ui::slider(ui, "Displacement", decal.displacement_m, kDisplacement);
     tint_properties(ui, app.tools.settings);
     function_properties(app, ui, app.tools.settings.function, app.tools.settings.parameters);
 }

@@ -188,6 +188,7 @@ TerrainDecal ToolController::decal_at(const ToolInput& input) const {
     d.half_m = box_half_m();
     d.heading_rad = heading_rad(input);
     d.outline = settings.decal.ellipse ? DecalOutline::ellipse : DecalOutline::rectangle;
+    d.displacement_m = settings.decal.displacement_m;
     d.material = material();
     d.material.rough = settings.decal.rough;
     return d;

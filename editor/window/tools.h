@@ -47,6 +47,7 @@ struct Brush {
 struct DecalDesc {
     double stretch = 1;  // length over width; the brush's radius is half the width
     double rough = 0.3;
+    double displacement_m = 0;  // of the ground under it
     bool ellipse = false;
 };
 

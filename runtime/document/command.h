@@ -18,7 +18,8 @@
 //   {"cmd":"footprints","prints":[{"x":…,"y":…,"heading_rad":…,"foot":0},…],"length_m":0.3,"depth_m":0.03,"seed":1}
 //       a print may have its own length_m, depth_m and seed; else print i has seed + i. foot: 0 left, 1
 //       right, 2 a piece of a tyre's track, 3 of a furrow. "keep":10000 drops the oldest of those with an end
-//   {"cmd":"decal","x":…,"y":…,"half_m":[4,2],"heading_rad":0,"outline":"rectangle", MATERIAL}
+//   {"cmd":"decal","x":…,"y":…,"half_m":[4,2],"heading_rad":0,"outline":"rectangle","displacement_m":0,
+//   MATERIAL}
 //   {"cmd":"spline","points":[[x,y,z,width],…],"fade_m":0,"carve":0,"shoulder_m":3, MATERIAL}
 //       control points of cubic Bezier pieces: 4, 7, 10, …; without a width they take "width_m", and a carve
 //       needs every z

@@ -142,6 +142,7 @@ Status check(const TerrainDecal& d) {
     LOAM_TRY(place_ok("the decal", d.x_m, d.y_m));
     for (int axis = 0; axis < 2; ++axis) LOAM_TRY(half_ok(d.half_m[axis], -kLargestHalf_m));
     LOAM_TRY(in_range("heading_rad", d.heading_rad, -1000, 1000));
+    LOAM_TRY(in_range("displacement_m", d.displacement_m, -50, 50));
     return check(d.material);
 }
 

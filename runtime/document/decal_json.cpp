@@ -139,6 +139,7 @@ TerrainDecal read_decal(Fields& fields) {
     d.half_m = read_vector(fields, "half_m", d.half_m);
     d.heading_rad = fields.number("heading_rad", 0);
     d.outline = read_outline(fields);
+    d.displacement_m = fields.number("displacement_m", 0);
     d.material = read_material(fields);
     return d;
 }
@@ -313,6 +314,7 @@ void write_decal(Json& json, const TerrainDecal& d) {
     json["half_m"] = vector_json(d.half_m);
     json["heading_rad"] = d.heading_rad;
     json["outline"] = name_of(d.outline);
+    if (d.displacement_m != 0) json["displacement_m"] = d.displacement_m;
     write_material(json, d.material);
 }
 

@@ -49,6 +49,9 @@ struct TerrainDecal {
     glm::dvec2 half_m{2, 2};  // ±0.01 … ±5000; a negative one mirrors
     double heading_rad = 0;   // clockwise from north, where the decal's +y points
     DecalOutline outline = DecalOutline::rectangle;
+    // By which the ground rises where the decal covers it, as its edge has it: ±50; its opacity does not
+    // count.
+    double displacement_m = 0;
     DecalMaterial material;
     bool operator==(const TerrainDecal&) const = default;
 };

@@ -13,6 +13,7 @@
 #include "runtime/document/spline_path.h"
 #include "shaders/document/crater_math.h"
 #include "shaders/document/footprint_math.h"
+#include "shaders/document/noise_math.h"
 
 namespace loam {
 
@@ -174,6 +175,42 @@ WorldRect all_of(const std::vector<WorldRect>& rects) {
     return all;
 }
 
+WorldRect box_of(const TerrainDecal& decal) {
+    return turned_box(decal.x_m, decal.y_m, glm::abs(decal.half_m), decal.heading_rad);
+}
+
+// As paint_outline and paint_edge of shaders/texture/paint_shade.glsl have it for texels that are fine
+// enough.
+double cover_of(const TerrainDecal& decal, glm::dvec2 local_m) {
+    const glm::dvec2 half_m = glm::abs(decal.half_m), share = glm::abs(local_m) / half_m;
+    const double smaller_m = std::min(half_m.x, half_m.y);
+    const glm::dvec2 beside_m = (1.0 - share) * half_m;
+    const double inside_m = decal.outline == DecalOutline::ellipse ? (1 - glm::length(share)) * smaller_m
+                                                                   : std::min(beside_m.x, beside_m.y);
+    if (inside_m <= 0) return 0;
+    const DecalMaterial& m = decal.material;
+    double eaten_m = inside_m;
+    if (m.rough > 0) {
+        const vec2 q(local_m / smaller_m);
+        const float uneven = 0.65f * shared::noise_value(q * 2.0f, shared::noise_hash(m.seed + 61u)) +
+                             0.35f * shared::noise_value(q * 8.0f, shared::noise_hash(m.seed + 62u));
+        eaten_m -= m.rough * smaller_m * (0.3 + 0.3 * double(uneven));
+    }
+    if (eaten_m <= 0) return 0;
+    const double soft_m = m.edge * smaller_m;
+    return eaten_m >= soft_m ? 1 : ramp(eaten_m / soft_m);
+}
+
+void apply_decal_height(const TerrainDecal& decal, const SampleGrid<double>& heights_m) {
+    const double s = std::sin(decal.heading_rad), c = std::cos(decal.heading_rad);
+    const glm::dvec2 sign(decal.half_m.x < 0 ? -1 : 1, decal.half_m.y < 0 ? -1 : 1);
+    for_each_sample(heights_m, box_of(decal), decal.x_m, decal.y_m,
+                    [&](double& height, double dx, double dy) {
+                        const glm::dvec2 local_m = sign * glm::dvec2(c * dx - s * dy, s * dx + c * dy);
+                        height += decal.displacement_m * cover_of(decal, local_m);
+                    });
+}
+
 WorldRect box_of(const Stamp& stamp) {
     return turned_box(stamp.x_m, stamp.y_m, glm::abs(stamp.half_m), stamp.heading_rad);
 }
@@ -275,7 +312,9 @@ struct HeightRects {
     Rects operator()(const SplineDecal& s) const {
         return s.carve > 0 ? rects_along(s, carve_reach_m(s)) : Rects{};
     }
-    Rects operator()(const TerrainDecal&) const { return {}; }
+    Rects operator()(const TerrainDecal& d) const {
+        return d.displacement_m != 0 ? Rects{box_of(d)} : Rects{};
+    }
     Rects operator()(const VolumeDecal&) const { return {}; }
     Rects operator()(const Stamp& s) const { return changes_heights(s) ? Rects{box_of(s)} : Rects{}; }
     Rects operator()(const Cutout&) const { return {}; }
@@ -307,9 +346,7 @@ struct TextureRects {
     }
     Rects operator()(const Footprint& f) const { return {bounds_of(f)}; }
     Rects operator()(const SplineDecal& s) const { return rects_along(s, path_of(s).half_width_m()); }
-    Rects operator()(const TerrainDecal& d) const {
-        return {turned_box(d.x_m, d.y_m, glm::abs(d.half_m), d.heading_rad)};
-    }
+    Rects operator()(const TerrainDecal& d) const { return {box_of(d)}; }
     Rects operator()(const VolumeDecal& v) const {
         const VolumeAxes axes = axes_of(v);
         const glm::dvec3 half =
@@ -330,7 +367,9 @@ struct ApplyHeight {
     void operator()(const SplineDecal& s) const {
         if (s.carve > 0) apply_carve(s, heights_m);
     }
-    void operator()(const TerrainDecal&) const {}
+    void operator()(const TerrainDecal& d) const {
+        if (d.displacement_m != 0) apply_decal_height(d, heights_m);
+    }
     void operator()(const VolumeDecal&) const {}
     void operator()(const Cutout&) const {}
     void operator()(const Flood&) const {}
@@ -359,7 +398,10 @@ struct InState {
         f.depth_m *= state.strength;
         f.strength *= state.strength;
     }
-    void operator()(TerrainDecal& d) const { d.material.opacity *= state.strength; }
+    void operator()(TerrainDecal& d) const {
+        d.material.opacity *= state.strength;
+        d.displacement_m *= state.strength;
+    }
     void operator()(SplineDecal& s) const {
         s.material.opacity *= state.strength;
         s.carve *= state.strength;

@@ -116,10 +116,11 @@ struct ResolvedRoles {  // LayerRoles as indices
 };
 
 // Footprints change heights and are drawn into the texture; craters change heights, layers and tint, and may
-// be drawn too; splines are drawn and may carve heights; terrain and volume decals are drawn; stamps change
-// heights, layers and tint; cutouts cut (maps/cutout_map.h); slides change heights and layers; floods change
-// layers and tint and are drawn; an event does nothing itself, its parts do. The mathematics of craters and
-// footprints is in shaders/document/crater_math.h and footprint_math.h, for shaders as well.
+// be drawn too; splines are drawn and may carve heights; terrain decals are drawn and may displace them;
+// volume decals are drawn; stamps change heights, layers and tint; cutouts cut (maps/cutout_map.h); slides
+// change heights and layers; floods change layers and tint and are drawn; an event does nothing itself, its
+// parts do. The mathematics of craters and footprints is in shaders/document/crater_math.h and
+// footprint_math.h, for shaders as well.
 //
 // Heights in metres. A sample's result depends on the sample's position only, never on the grid it is part
 // of: pages of every level must agree.

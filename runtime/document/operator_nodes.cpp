@@ -45,14 +45,14 @@ double widest_m(int level) {
 std::optional<OperatorNode> node_of(const Operator& op) {
     if (op.part != 0 || !op.life.ever()) return std::nullopt;
     int kind = kTerrain;
-    if (const auto* spline = std::get_if<SplineDecal>(&op.shape); spline && spline->carve == 0)
+    if (std::holds_alternative<SplineDecal>(op.shape))
         kind = kSpline;
     else if (std::holds_alternative<VolumeDecal>(op.shape))
         kind = kVolume;
     else if (!std::holds_alternative<TerrainDecal>(op.shape))
         return std::nullopt;
     const WorldRect bounds = op.texture_bounds();
-    if (bounds.empty()) return std::nullopt;
+    if (bounds.empty() || !op.height_rects().empty()) return std::nullopt;
     int exponent = 0;  // a volume on its side is drawn wider than its bounds
     std::frexp(std::max({bounds.width(), bounds.height(), op.texture_size_m()}), &exponent);
     const int level = std::clamp(exponent + kShare, kFinest, kCoarsest);

@@ -1,11 +1,11 @@
 // Operators that are read when somebody looks: a quad tree of nodes, each of which lists the operators of its
 // square and size in terrain.db. Only how many a node has is known from the start.
 //
-// Those are the ones that are drawn and do nothing else: terrain, spline and volume decals without a carve
-// and without a life. A texel sees none that is less than half as wide, so a page of any size looks at the
-// few nodes under it of the sizes that show. What changes heights, layers or holes is part of every level of
-// its map, down to the page that shows all of it, and what has a life must be there when its time comes: the
-// document holds these from its opening on (operator_set.h).
+// Those are the ones that are drawn and do nothing else: terrain, spline and volume decals without a carve,
+// a displacement or a life. A texel sees none that is less than half as wide, so a page of any size looks at
+// the few nodes under it of the sizes that show. What changes heights, layers or holes is part of every level
+// of its map, down to the page that shows all of it, and what has a life must be there when its time comes:
+// the document holds these from its opening on (operator_set.h).
 //
 // A node of level L is 2^L m wide and has the operators up to 1/64 as wide whose bounds begin in it (level 6:
 // all the smaller ones too), of one kind. Any thread may call; operators stay where they are until `trim` or

@@ -36,7 +36,8 @@ def random_shape(rng, p, layers):
     material = random_material(rng, layers)
     outline = rng.choice(("rectangle", "ellipse"))
     if kind == "decal":
-        return kind, {"x": x, "y": y, "half_m": half, "heading_rad": rng.uniform(-4, 4), "outline": outline, **material}
+        return kind, {"x": x, "y": y, "half_m": half, "heading_rad": rng.uniform(-4, 4), "outline": outline,
+                      "displacement_m": rng.choice((0, rng.uniform(-1, 1))), **material}
     if kind == "volume":
         return kind, {"at": [x, y, float(p.height(x, y)) + rng.uniform(-1, 1)], "half_m": half + [rng.uniform(0.5, 9)],
                       "direction": [rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(-1, -0.1)],
@@ -266,3 +267,40 @@ def test_a_layer_that_shares_its_file_is_laid_and_a_transition_is_refused(plain)
         with pytest.raises(loam.Error, match="is a transition"):
             p.spline([[0, 0], [50, 10], [90, 40], [120, 90]], width_m=3, layer="edge")
         assert (p.render(ABOVE, size=SIZE) == laid).all()
+
+
+def test_a_decal_displaces_the_ground_that_it_is_painted_on(plain):
+    """Heights are evaluated on the CPU, colours in a shader: the rough edge of both is the same. From straight above, colour over
+    colour and height over height are both the decal's cover."""
+    size, up, half, raised = (400, 400), 60.0, 18.0, 0.05
+    flat = dict(half_m=[half, 0.7 * half], heading_rad=0.6, edge=0.4, rough=0.7, seed=5, outline="ellipse")
+    with loam.open(str(plain)) as p:
+        ground = p.height(128, 128)
+
+        def look():
+            return p.render((128, 128, ground + up, 0, -90, 40), size, debug="albedo").astype(float)
+
+        before = look()
+        p.decal(128, 128, colour=RED, displacement_m=raised, **flat)
+        after = look()
+        row, column = np.mgrid[0:size[1], 0:size[0]]
+        scale = 2 * up * math.tan(math.radians(20)) / size[1]
+        x, y = 128 + (column + 0.5 - size[0] / 2) * scale, 128 - (row + 0.5 - size[1] / 2) * scale
+        heights = p.height(x.ravel(), y.ravel()).reshape(x.shape)
+        p.undo()
+        cover = (heights - p.height(x.ravel(), y.ravel()).reshape(x.shape)) / raised
+        assert cover.min() > -1e-3 and cover.max() < 1 + 1e-3
+        assert 0.05 < (cover > 0.99).mean() < 0.6 and (cover == 0).mean() > 0.2
+
+        def root(picture):  # of linear light, as pages keep it and decals are blended
+            return (picture[..., 2] / 255) ** 1.1
+
+        painted = 1 - root(after) / np.maximum(root(before), 1e-3)
+        assert np.abs(painted - cover).mean() < 0.003
+        assert np.abs(painted - cover).max() < 0.08, "a metre of the height map lies between its samples"
+        p.decal(128, 128, colour=RED, displacement_m=-2, life={"from_s": 0, "rise_s": 10}, **flat)
+        p.time_s = 5
+        half_way = p.height(128, 128) - ground
+        p.time_s = 10
+        assert p.height(128, 128) - ground == pytest.approx(-2, abs=1e-3) and -1.9 < half_way < -0.1
+        assert p.count_stale_pages() == 0

@@ -43,7 +43,8 @@ def random_operator(rng, x, y, layers):
         return rng.choice(events)
     points = [[x + rng.uniform(-2, 2) * size, y + rng.uniform(-2, 2) * size, rng.uniform(-5, 20)] for _ in range(7)]
     operator = rng.choice((
-        {"cmd": "decal", "x": x, "y": y, "half_m": half, "heading_rad": rng.uniform(0, 6), "layer": rng.choice(layers)},
+        {"cmd": "decal", "x": x, "y": y, "half_m": half, "heading_rad": rng.uniform(0, 6), "layer": rng.choice(layers),
+         "displacement_m": rng.choice((0, rng.uniform(-1, 1)))},
         {"cmd": "spline", "points": points, "width_m": max(0.3 * size, 0.1), "carve": rng.random(), "layer": rng.choice(layers)},
         {"cmd": "volume", "at": [x, y, rng.uniform(-5, 20)], "half_m": half + [size], "direction": [0.3, 0.2, -1]},
         {"cmd": "decal", "x": x, "y": y, "half_m": half, "function": rng.choice(("moss", "frost", "gravel", "scorch"))},

@@ -38,7 +38,13 @@ inline OperatorShape random_decal(std::mt19937& random, glm::dvec2 at, double si
     const auto outline = random() % 2 ? DecalOutline::ellipse : DecalOutline::rectangle;
     switch (random() % 3) {
         case 0:
-            return TerrainDecal{at.x, at.y, {half(), half()}, real(-7, 7), outline, random_material(random)};
+            return TerrainDecal{at.x,
+                                at.y,
+                                {half(), half()},
+                                real(-7, 7),
+                                outline,
+                                random() % 3 == 0 ? real(-0.2, 0.2) * std::min(size_m, 20.0) : 0,
+                                random_material(random)};
         case 1:
             return VolumeDecal{{at, real(-2, 20)},
                                {half(), half(), real(0.5, 3) * size_m},

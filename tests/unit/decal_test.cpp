@@ -306,6 +306,48 @@ TEST(decals, bad_ones_are_refused_with_one_sentence) {
     EXPECT_FALSE(check_shape(decal).ok());
 }
 
+// The closed form of a decal's displacement along its axes, at the origin and in the far corner of a large
+// map.
+TEST(terrain_decal, displaces_the_ground_where_it_covers_it) {
+    for (const double corner_m : {0.0, 16'800.0})
+        for (const auto outline : {DecalOutline::rectangle, DecalOutline::ellipse})
+            for (const double edge : {0.0, 0.25, 1.0}) {
+                TerrainDecal decal{.x_m = corner_m, .y_m = corner_m, .half_m = {-4, 2}, .heading_rad = 0.5};
+                decal.outline = outline;
+                decal.displacement_m = -0.75;
+                decal.material.edge = edge;
+                const Operator op = prepared(decal);
+                ASSERT_EQ(op.height_rects().size(), 1u);
+                EXPECT_EQ(op.height_bounds(), op.texture_bounds());
+                const auto displaced_m = [&](double along_x_m, double along_y_m) {
+                    const double s = std::sin(0.5), c = std::cos(0.5);
+                    double height = 100;
+                    apply_height(op, {&height, 1, 1, 1, corner_m + c * along_x_m + s * along_y_m,
+                                      corner_m - s * along_x_m + c * along_y_m, 1});
+                    return height - 100;
+                };
+                EXPECT_EQ(displaced_m(4.01, 0), 0);
+                EXPECT_EQ(displaced_m(0, -2.01), 0);
+                if (outline == DecalOutline::ellipse)
+                    EXPECT_EQ(displaced_m(3.9, 1.9), 0) << "its corners are cut";
+                EXPECT_NEAR(displaced_m(0, 0), -0.75, 1e-9);
+                if (edge == 0) {
+                    EXPECT_NEAR(displaced_m(3.99, 0), -0.75, 1e-9);
+                    continue;
+                }
+                // Half way into the soft edge it is half as deep: the ramp is even about its middle.
+                EXPECT_NEAR(displaced_m(0, 2 - edge), -0.375, 1e-5);
+                EXPECT_NEAR(displaced_m(outline == DecalOutline::ellipse ? 4 - 2 * edge : 4 - edge, 0),
+                            -0.375, 1e-5);
+            }
+    TerrainDecal wild{.half_m = {5, 5}};
+    wild.displacement_m = std::nan("");
+    EXPECT_FALSE(check_command({AddOperatorCommand{wild, {}}}).ok());
+    wild.displacement_m = 51;
+    EXPECT_NE(check_command({AddOperatorCommand{wild, {}}}).message().find("displacement_m is 51"),
+              std::string::npos);
+}
+
 TEST(decals, are_added_edited_reordered_and_undone) {
     test::TemporaryFolder folder;
     const auto path = folder.path() / "p";

@@ -190,7 +190,7 @@ TEST(operator_nodes, what_is_in_memory_makes_no_difference_to_commands_undo_and_
     }
     EXPECT_GT(applied, 500);
     EXPECT_EQ(take(keeps->content_digest()), take(forgets->content_digest()));
-    EXPECT_GT(reads, 200u);
+    EXPECT_GT(reads, 100u);
     std::vector<const Operator*> a, b;
     for (int question = 0; question < 100; ++question) {
         const double x = real(-10, 300), y = real(-10, 200), size = real(0, 60);

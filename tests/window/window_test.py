@@ -417,7 +417,7 @@ def test_a_decal_is_made_by_a_function_that_is_written_meanwhile(display, projec
     away(display, window)
     start = display.screenshot()
     spot = place(window, 0.5, 0.85)
-    display.click(1190, 280)  # the tool's function: the first one after "None", cracks
+    display.click(1190, 312)  # the tool's function: the first one after "None", cracks
     display.key("Down", "Return")
     window.settle()
     display.xdotool("mousemove", *spot)
