@@ -28,7 +28,8 @@ std::vector<double> read_heights(const Document& document, ExportWhat what) {
         if (what == ExportWhat::base) continue;
         const double y_m = row * settings.height_spacing_m;
         operators.clear();
-        document.operators_over_height({0, y_m, settings.bounds().max_x, y_m}, operators);
+        document.operators_over_height({0, y_m, settings.bounds().max_x, y_m}, settings.height_spacing_m,
+                                       operators);
         const SampleGrid<double> grid{target, width, 1, width, 0, y_m, settings.height_spacing_m};
         for (const Operator* op : operators) apply_height(*op, grid);
     }

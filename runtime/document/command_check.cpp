@@ -274,6 +274,7 @@ Status check(const FootprintsCommand& c) {
 }
 
 Status check(const AddOperatorCommand& c) {
+    if (std::holds_alternative<Footprint>(c.shape)) return error("prints are laid by the command footprints");
     LOAM_TRY(check_life(c.life));
     return check_shape(c.shape);
 }

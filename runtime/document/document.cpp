@@ -185,8 +185,9 @@ Status Document::Impl::load() {
 }
 
 Status Document::Impl::load_operators(PageStore& reader) {
+    grids = grids_of(settings);
     nodes = std::make_unique<OperatorNodes>(
-        [this](int64_t node) { return read_node(node); },
+        grids, [this](int64_t node) { return read_node(node); },
         [this](uint64_t id) -> std::optional<int64_t> {
             const auto row = pages->with_store([&](PageStore& from) { return from.read_operator(id); });
             return row.ok() && row->has_value() ? (*row)->node : std::nullopt;
@@ -221,18 +222,19 @@ Status Document::Impl::load_operators(PageStore& reader) {
 Status Document::Impl::give_nodes() {
     std::vector<Operator> moved;
     for (const Operator& op : operators.sorted())
-        if (node_of(op)) moved.push_back(op);
+        if (node_of(op, grids)) moved.push_back(op);
     if (moved.empty()) return {};
     LOAM_TRY(store.begin());
     for (const Operator& op : moved)
-        if (const Status status = store.write_operator(op.id, operator_json(op), node_of(op)); !status.ok()) {
+        if (const Status status = store.write_operator(op.id, operator_json(op), node_of(op, grids));
+            !status.ok()) {
             store.rollback();
             return status;
         }
     LOAM_TRY(store.commit());
     for (const Operator& op : moved) {
         operators.remove(op.id);
-        nodes->add_counted(*node_of(op), 1);
+        nodes->add_counted(*node_of(op, grids), 1);
     }
     return {};
 }
@@ -255,7 +257,7 @@ std::vector<Operator> Document::Impl::read_node(int64_t node) {
     std::vector<Operator> read;
     for (const PageStore::OperatorRow& row : rows) {
         auto op = read_operator(row);
-        if (op.ok() && node_of(*op) != OperatorNode{node, material_of(op->shape)->function})
+        if (const auto of = op.ok() ? node_of(*op, grids) : std::nullopt; op.ok() && (!of || of->key != node))
             op =
                 error("operator {}: kept at another place than it has; `loam verify` finds all such", row.id);
         if (op.ok())
@@ -390,12 +392,6 @@ TexelRect Document::fill_texels(const FillCommand& command) const {
 glm::ivec2 Document::index_size_texels() const {
     return {impl_->index.samples_x, impl_->index.samples_y};
 }
-void Document::operators_over_height(const WorldRect& rect, std::vector<const Operator*>& out) const {
-    impl_->operators.over_height().query(rect, out);
-}
-void Document::operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const {
-    impl_->operators.over_index().query(rect, out);
-}
 namespace {
 
 // Of what is held, and behind it of what was read: in order of evaluation.
@@ -408,11 +404,25 @@ void merge_into(std::vector<const Operator*>& out, const std::vector<const Opera
 
 }  // namespace
 
+void Document::operators_over_height(const WorldRect& rect, double step_m,
+                                     std::vector<const Operator*>& out) const {
+    impl_->operators.over_height().query(rect, out);
+    thread_local std::vector<const Operator*> read;
+    impl_->nodes->query_height(rect, step_m, read);
+    merge_into(out, read);
+}
+void Document::operators_over_index(const WorldRect& rect, double step_m,
+                                    std::vector<const Operator*>& out) const {
+    impl_->operators.over_index().query(rect, out);
+    thread_local std::vector<const Operator*> read;
+    impl_->nodes->query_index(rect, step_m, read);
+    merge_into(out, read);
+}
 void Document::operators_over_texture(const WorldRect& rect, double texel_m,
                                       std::vector<const Operator*>& out) const {
     impl_->operators.over_texture().query(rect, out, texel_m);
     thread_local std::vector<const Operator*> read;
-    impl_->nodes->query(rect, texel_m, read);
+    impl_->nodes->query_texture(rect, texel_m, read);
     merge_into(out, read);
 }
 void Document::operators_over_cutout(const WorldRect& rect, std::vector<const Operator*>& out) const {

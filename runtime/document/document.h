@@ -105,10 +105,12 @@ class Document {
     [[nodiscard]] glm::ivec2 index_size_texels() const;
     [[nodiscard]] TexelRect fill_texels(const FillCommand& command) const;  // that it looks at
     // Enabled operators whose bounds in the map overlap, in order of evaluation. Valid while the ReadLock is
-    // held. Decals are read when first asked for (operator_nodes.h): what cannot be read is left out, and the
+    // held. Most are read when first asked for (operator_nodes.h): what cannot be read is left out, and the
     // log and `verify` say so.
-    void operators_over_height(const WorldRect& rect, std::vector<const Operator*>& out) const;
-    void operators_over_index(const WorldRect& rect, std::vector<const Operator*>& out) const;
+    // Those that a grid with samples at multiples of this step sees, or more; 0: all. It is
+    // finest_height_spacing or the index map's spacing, times a power of two.
+    void operators_over_height(const WorldRect& rect, double step_m, std::vector<const Operator*>& out) const;
+    void operators_over_index(const WorldRect& rect, double step_m, std::vector<const Operator*>& out) const;
     // Those that texels of this size show, or more; 0: all.
     void operators_over_texture(const WorldRect& rect, double texel_m,
                                 std::vector<const Operator*>& out) const;
@@ -122,9 +124,9 @@ class Document {
     // Ids of those added, changed or removed since a revision; none: so many that `operators` has to be
     // asked.
     [[nodiscard]] std::optional<std::vector<uint64_t>> changed_operators(uint64_t since_revision) const;
-    // Forgets decals that nobody has looked at for long, when there are many: once a frame, without a
+    // Forgets operators that nobody has looked at for long, when there are many: once a frame, without a
     // ReadLock.
-    static constexpr size_t kMostLoadedOperators = 20'000;  // about 20 MB
+    static constexpr size_t kMostLoadedOperators = 100'000;  // about 100 MB
     void trim_operators(size_t most = kMostLoadedOperators);
     [[nodiscard]] std::optional<Operator> find_operator(uint64_t id) const;
     [[nodiscard]] ResolvedRoles roles() const;

@@ -358,7 +358,7 @@ void Document::Impl::show_operators(Change& change) {
         operators.remove(id);
         if (const Operator* before = nodes->find_loaded(id)) append_dirt(change.dirt, *before);
         nodes->remove(id);
-        if (op && node_of(*op)) {
+        if (op && node_of(*op, grids)) {
             nodes->set(*op);
             append_dirt(change.dirt, *op);
         } else if (op) {

@@ -53,6 +53,7 @@ struct Document::Impl {
     PageStore store;  // the writing connection; not open in a read-only document
     std::unique_ptr<BasePages> pages;
     OperatorSet operators;                 // those that are always held
+    OperatorGrids grids;
     std::unique_ptr<OperatorNodes> nodes;  // the others
     std::unique_ptr<StampLibrary> stamps;
     std::unique_ptr<FunctionLibrary> functions;

@@ -22,7 +22,7 @@ Status swap_page(PageStore& store, RowImage& image, PageBalance& balance) {
     return {};
 }
 
-Status swap_operator(PageStore& store, RowImage& image) {
+Status swap_operator(PageStore& store, RowImage& image, const OperatorGrids& grids) {
     const uint64_t id = uint64_t(image.key);
     auto current = store.read_operator(id);
     if (!current.ok()) return current.error();
@@ -30,7 +30,7 @@ Status swap_operator(PageStore& store, RowImage& image) {
         const std::string_view json(reinterpret_cast<const char*>(image.bytes->data()), image.bytes->size());
         const auto op = parse_operator(id, json);
         if (!op.ok()) return error("the journal: {}", op.message());
-        LOAM_TRY(store.write_operator(id, json, node_of(*op)));
+        LOAM_TRY(store.write_operator(id, json, node_of(*op, grids)));
     } else {
         LOAM_TRY(store.erase_operator(id));
     }
@@ -101,13 +101,14 @@ Result<std::vector<RowImage>> images_of(std::span<const uint8_t> bytes) {
 
 Status swap_images(PageStore& store, std::vector<RowImage>& images, PageBalance& balance,
                    SettingsEdit& settings) {
+    const OperatorGrids grids = grids_of(settings.current);
     for (RowImage& image : images) {
         switch (image.kind) {
             case RowImage::Kind::page:
                 LOAM_TRY(swap_page(store, image, balance));
                 break;
             case RowImage::Kind::op:
-                LOAM_TRY(swap_operator(store, image));
+                LOAM_TRY(swap_operator(store, image, grids));
                 break;
             case RowImage::Kind::transition:
                 LOAM_TRY(swap_transition(settings, image));

@@ -9,11 +9,12 @@ namespace loam {
 
 namespace {
 
-enum Kind : int { kTerrain, kSpline, kVolume };
+// What a node's operators are; kGround: they change heights or layers.
+enum Kind : int { kTerrain, kSpline, kVolume, kCrater, kFootprint, kSlide, kGround = 8 };
 
-// A node's key: | bits 56–57 kind | 48–55 level | 24–47 y | 0–23 x |, the places with kZero added.
+// A node's key: | bits 56–59 kind | 48–55 level | 24–47 y | 0–23 x |, the places with kZero added.
 constexpr int64_t kZero = int64_t(1) << 23, kMask = (int64_t(1) << 24) - 1;
-constexpr int kShare = 6;  // of a node's side an operator takes up at most 2^-kShare
+constexpr int kShare = 6;  // an operator counts up to steps of 2^-kShare of its node's side
 constexpr int kFinest = 6, kCoarsest = 30;
 
 int64_t cell_of(double position_m, int level) {
@@ -35,29 +36,62 @@ int64_t y_in(int64_t key) {
     return (key >> 24 & kMask) - kZero;
 }
 
-// None of a node's operators is wider, nor what is drawn of it.
-double widest_m(int level) {
+// None of a node's operators is wider, is drawn wider or counts at longer steps.
+double longest_m(int level) {
     return level == kCoarsest ? INFINITY : std::ldexp(1.0, level - kShare);
+}
+
+std::optional<int> kind_of(const OperatorShape& shape) {
+    if (std::holds_alternative<TerrainDecal>(shape)) return kTerrain;
+    if (std::holds_alternative<SplineDecal>(shape)) return kSpline;
+    if (std::holds_alternative<VolumeDecal>(shape)) return kVolume;
+    if (std::holds_alternative<Crater>(shape)) return kCrater;
+    if (std::holds_alternative<Footprint>(shape)) return kFootprint;
+    if (std::holds_alternative<Slide>(shape)) return kSlide;
+    return std::nullopt;
+}
+
+// The longest spacing * 2^k of which a multiple lies in the rectangle both ways; 0: not even of the spacing.
+double longest_step_m(const WorldRect& rect, double spacing_m) {
+    // Grids reach a place by sums of their own, and samples a little outside may count (samples_in).
+    constexpr double kSlack = 1e-5, kLongest_m = 1 << 24;
+    double longest_m = 0;
+    for (double step_m = spacing_m; step_m <= kLongest_m; step_m *= 2) {
+        const auto hit = [&](double low, double high) {
+            return std::floor(high / step_m + kSlack) >= std::ceil(low / step_m - kSlack);
+        };
+        if (!hit(rect.min_x, rect.max_x) || !hit(rect.min_y, rect.max_y)) break;
+        longest_m = step_m;
+    }
+    return longest_m;
 }
 
 }  // namespace
 
-std::optional<OperatorNode> node_of(const Operator& op) {
-    if (op.part != 0 || !op.life.ever()) return std::nullopt;
-    int kind = kTerrain;
-    if (std::holds_alternative<SplineDecal>(op.shape))
-        kind = kSpline;
-    else if (std::holds_alternative<VolumeDecal>(op.shape))
-        kind = kVolume;
-    else if (!std::holds_alternative<TerrainDecal>(op.shape))
-        return std::nullopt;
-    const WorldRect bounds = op.texture_bounds();
-    if (bounds.empty() || !op.height_rects().empty()) return std::nullopt;
-    int exponent = 0;  // a volume on its side is drawn wider than its bounds
-    std::frexp(std::max({bounds.width(), bounds.height(), op.texture_size_m()}), &exponent);
+OperatorGrids grids_of(const ProjectSettings& settings) {
+    return {settings.height_spacing_m / double(1 << settings.refine), settings.index_spacing_m};
+}
+
+std::optional<OperatorNode> node_of(const Operator& op, const OperatorGrids& grids) {
+    auto kind = kind_of(op.shape);
+    if (!kind || op.part != 0 || !op.life.ever()) return std::nullopt;
+    WorldRect bounds = op.texture_bounds();
+    double longest_m = op.texture_size_m();  // a volume on its side is drawn wider than its bounds
+    const auto add = [&](const WorldRect& rect) {
+        *kind |= kGround;
+        bounds = united(bounds, rect);
+        for (const double spacing_m : {grids.height_m, grids.index_m})  // either may ask for heights
+            longest_m = std::max(longest_m, longest_step_m(rect, spacing_m));
+    };
+    for (const WorldRect& rect : op.height_rects()) add(rect);
+    for (const WorldRect& rect : op.index_rects()) add(rect);
+    if (bounds.empty()) return std::nullopt;
+    int exponent = 0;
+    std::frexp(std::max({bounds.width(), bounds.height(), longest_m}), &exponent);
     const int level = std::clamp(exponent + kShare, kFinest, kCoarsest);
-    return OperatorNode{key_of(kind, level, cell_of(bounds.min_x, level), cell_of(bounds.min_y, level)),
-                        material_of(op.shape)->function};
+    const DecalMaterial* material = material_of(op.shape);
+    return OperatorNode{key_of(*kind, level, cell_of(bounds.min_x, level), cell_of(bounds.min_y, level)),
+                        material ? material->function : std::string()};
 }
 
 OperatorNodes::Node& OperatorNodes::node(int64_t key) {
@@ -88,6 +122,8 @@ void OperatorNodes::insert(Node& to, const Operator& op) {
     LOAM_CHECK(!place, "an operator is in two nodes");
     place = std::make_unique<Operator>(op);
     to.ids.push_back(op.id);
+    for (const WorldRect& rect : op.height_rects()) height_.add(place.get(), rect);
+    for (const WorldRect& rect : op.index_rects()) index_.add(place.get(), rect);
     for (const WorldRect& rect : op.texture_rects()) texture_.add(place.get(), rect);
     if (std::holds_alternative<VolumeDecal>(op.shape)) volumes_.add(place.get(), op.texture_bounds());
     loaded_count_ = loaded_.size();
@@ -96,6 +132,8 @@ void OperatorNodes::insert(Node& to, const Operator& op) {
 void OperatorNodes::erase(uint64_t id) {
     const auto found = loaded_.find(id);
     const Operator* op = found->second.get();
+    for (const WorldRect& rect : op->height_rects()) height_.remove(op, rect);
+    for (const WorldRect& rect : op->index_rects()) index_.remove(op, rect);
     for (const WorldRect& rect : op->texture_rects()) texture_.remove(op, rect);
     if (std::holds_alternative<VolumeDecal>(op->shape)) volumes_.remove(op, op->texture_bounds());
     loaded_.erase(found);
@@ -124,7 +162,7 @@ void OperatorNodes::wake(uint64_t id) {
 }
 
 void OperatorNodes::set(const Operator& op) {
-    const auto of = node_of(op);
+    const auto of = node_of(op, grids_);
     LOAM_CHECK(of, "an operator that the document holds was given to the nodes");
     const std::lock_guard lock(mutex_);
     count(*of, 1);
@@ -138,7 +176,7 @@ void OperatorNodes::remove(uint64_t id) {
     const std::lock_guard lock(mutex_);
     const auto found = loaded_.find(id);
     if (found == loaded_.end()) return;
-    const auto of = node_of(*found->second);
+    const auto of = node_of(*found->second, grids_);
     std::erase(node(of->key).ids, id);
     erase(id);
     count(*of, -1);
@@ -150,12 +188,13 @@ const Operator* OperatorNodes::find_loaded(uint64_t id) const {
     return found == loaded_.end() ? nullptr : found->second.get();
 }
 
-void OperatorNodes::load_under(const WorldRect& rect, double texel_m, bool volumes_only) {
+template <typename Wanted>
+void OperatorNodes::load_under(const WorldRect& rect, Wanted&& wanted) {
     for (auto& [tier, of] : tiers_) {
         const auto [kind, level] = tier;
-        if ((volumes_only && kind != kVolume) || 2 * widest_m(level) <= texel_m) continue;
+        if (!wanted(kind, longest_m(level))) continue;
         // What begins in a cell before may reach in; of the coarsest level from anywhere.
-        const double reach_m = level == kCoarsest ? kZero * std::ldexp(1.0, level) : widest_m(level);
+        const double reach_m = level == kCoarsest ? kZero * std::ldexp(1.0, level) : longest_m(level);
         const int64_t x0 = cell_of(rect.min_x - reach_m, level), x1 = cell_of(rect.max_x, level);
         const int64_t y0 = cell_of(rect.min_y - reach_m, level), y1 = cell_of(rect.max_y, level);
         if (double(x1 - x0 + 1) * double(y1 - y0 + 1) > double(of.nodes.size())) {
@@ -170,19 +209,37 @@ void OperatorNodes::load_under(const WorldRect& rect, double texel_m, bool volum
     }
 }
 
-void OperatorNodes::query(const WorldRect& rect, double texel_m, std::vector<const Operator*>& out) {
+void OperatorNodes::query_texture(const WorldRect& rect, double texel_m, std::vector<const Operator*>& out) {
     out.clear();
     if (rect.empty()) return;
     const std::lock_guard lock(mutex_);
-    load_under(rect, texel_m, false);
+    load_under(rect, [&](int, double longest_m) { return 2 * longest_m > texel_m; });
     texture_.query(rect, out, texel_m);
+}
+
+void OperatorNodes::query_height(const WorldRect& rect, double step_m, std::vector<const Operator*>& out) {
+    out.clear();
+    if (rect.empty()) return;
+    const std::lock_guard lock(mutex_);
+    load_under(rect, [&](int kind, double longest_m) { return (kind & kGround) && longest_m >= step_m; });
+    height_.query(rect, out);
+}
+
+void OperatorNodes::query_index(const WorldRect& rect, double step_m, std::vector<const Operator*>& out) {
+    out.clear();
+    if (rect.empty()) return;
+    const std::lock_guard lock(mutex_);
+    load_under(rect, [&](int kind, double longest_m) {
+        return (kind == (kCrater | kGround) || kind == (kSlide | kGround)) && longest_m >= step_m;
+    });
+    index_.query(rect, out);
 }
 
 void OperatorNodes::query_volumes(const WorldRect& rect, std::vector<const Operator*>& out) {
     out.clear();
     if (rect.empty()) return;
     const std::lock_guard lock(mutex_);
-    load_under(rect, 0, true);
+    load_under(rect, [](int kind, double) { return kind == kVolume; });
     volumes_.query(rect, out);
 }
 
@@ -217,15 +274,21 @@ std::vector<OperatorShape> OperatorNodes::kinds() const {
     for (const auto& [kind, operators] : functions_) {
         DecalMaterial material;
         material.function = kind.second;
-        switch (kind.first) {
+        switch (kind.first & ~kGround) {
             case kTerrain:
                 shapes.push_back(TerrainDecal{.material = material});
                 break;
             case kSpline:
                 shapes.push_back(SplineDecal{.material = material});
                 break;
-            default:
+            case kVolume:
                 shapes.push_back(VolumeDecal{.material = material});
+                break;
+            case kCrater:
+                shapes.push_back(Crater{});
+                break;
+            case kFootprint:
+                shapes.push_back(Footprint{});
         }
     }
     return shapes;

@@ -1,15 +1,18 @@
 // Operators that are read when somebody looks: a quad tree of nodes, each of which lists the operators of its
-// square and size in terrain.db. Only how many a node has is known from the start.
+// square and coarseness in terrain.db. Only how many a node has is known from the start.
 //
-// Those are the ones that are drawn and do nothing else: terrain, spline and volume decals without a carve,
-// a displacement or a life. A texel sees none that is less than half as wide, so a page of any size looks at
-// the few nodes under it of the sizes that show. What changes heights, layers or holes is part of every level
-// of its map, down to the page that shows all of it, and what has a life must be there when its time comes:
-// the document holds these from its opening on (operator_set.h).
+// Whoever composes asks for a rectangle at a step: texels see no decal less than half as wide, and of an
+// operator that changes heights or layers a grid of samples sees nothing where none of its samples lies in
+// the operator's bounds. Grids nest (all samples are at multiples of spacing * 2^k), so that every operator
+// has a coarsest step at which it counts, and one that most small ones reach by chance only. A node of level
+// L is 2^L m wide and has the operators that count up to steps of 2^(L-6) m and are at most so wide, whose
+// bounds begin in it; so a page of any level looks at a few nodes of every level that counts for it, and at
+// none of the small ones that its samples miss.
 //
-// A node of level L is 2^L m wide and has the operators up to 1/64 as wide whose bounds begin in it (level 6:
-// all the smaller ones too), of one kind. Any thread may call; operators stay where they are until `trim` or
-// a change.
+// What has a life must be there when its time comes, and events, stamps, cutouts and floods are few and made
+// of more: the document holds these from its opening on (operator_set.h).
+//
+// Any thread may call; operators stay where they are until `trim` or a change.
 #pragma once
 
 #include <atomic>
@@ -27,20 +30,28 @@
 #include "runtime/document/operator.h"
 #include "runtime/document/operator_index.h"
 #include "runtime/store/page_store.h"
+#include "runtime/store/project.h"
 
 namespace loam {
 
 using OperatorNode = PageStore::OperatorNode;
 
+// The grids that ask for heights and layers: of the finest level, metres.
+struct OperatorGrids {
+    double height_m = 1, index_m = 1;
+};
+[[nodiscard]] OperatorGrids grids_of(const ProjectSettings& settings);
+
 // None: the document holds it from its opening on.
-[[nodiscard]] std::optional<OperatorNode> node_of(const Operator& op);
+[[nodiscard]] std::optional<OperatorNode> node_of(const Operator& op, const OperatorGrids& grids);
 
 class OperatorNodes {
   public:
     // What a node has in terrain.db now, ready for a document; and where an operator is, none: nowhere.
     using Read = std::function<std::vector<Operator>(int64_t node)>;
     using Find = std::function<std::optional<int64_t>(uint64_t id)>;
-    OperatorNodes(Read read, Find find) : read_(std::move(read)), find_(std::move(find)) {}
+    OperatorNodes(const OperatorGrids& grids, Read read, Find find)
+        : grids_(grids), read_(std::move(read)), find_(std::move(find)) {}
 
     void add_counted(const OperatorNode& node, uint64_t operators);  // of what the database has at opening
     // Reads the node of an operator whose row is about to change.
@@ -49,8 +60,10 @@ class OperatorNodes {
     void remove(uint64_t id);      // that was woken; unknown: fine
     [[nodiscard]] const Operator* find_loaded(uint64_t id) const;
 
-    // As OperatorIndex::query: enabled ones that texels of this size may show (0: of any).
-    void query(const WorldRect& rect, double texel_m, std::vector<const Operator*>& out);
+    // As OperatorIndex::query, for texels or a grid of this step (0: all there are).
+    void query_texture(const WorldRect& rect, double texel_m, std::vector<const Operator*>& out);
+    void query_height(const WorldRect& rect, double step_m, std::vector<const Operator*>& out);
+    void query_index(const WorldRect& rect, double step_m, std::vector<const Operator*>& out);
     void query_volumes(const WorldRect& rect, std::vector<const Operator*>& out);
 
     // Forgets nodes that nobody has asked for the longest, down to three quarters of so many operators.
@@ -84,15 +97,17 @@ class OperatorNodes {
     void unload(Node& node);
     void insert(Node& node, const Operator& op);
     void erase(uint64_t id);
-    void load_under(const WorldRect& rect, double texel_m, bool volumes_only);
+    template <typename Wanted>  // by kind, and the longest step or size of a level's
+    void load_under(const WorldRect& rect, Wanted&& wanted);
 
+    OperatorGrids grids_;
     Read read_;
     Find find_;
     mutable std::mutex mutex_;
     std::map<TierKey, Tier> tiers_;
-    std::map<std::pair<int, std::string>, uint64_t> functions_;  // operators by kind and function
     std::unordered_map<uint64_t, std::unique_ptr<Operator>> loaded_;
-    OperatorIndex texture_, volumes_;
+    std::map<std::pair<int, std::string>, uint64_t> functions_;  // operators by kind and function
+    OperatorIndex height_, index_, texture_, volumes_;
     std::atomic<size_t> loaded_count_ = 0;
     uint64_t total_ = 0, clock_ = 0, reads_ = 0;
 };

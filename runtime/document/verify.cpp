@@ -225,7 +225,8 @@ class Verifier {
             else if (int64_t(id) >= next->value_or(1))
                 fail("operator {} has an id that has not been given out yet", id);
             // None of an older format's have a node before it is opened for writing.
-            if (op.ok() && row.node && (!node_of(*op) || node_of(*op)->key != *row.node))
+            const auto of = op.ok() ? node_of(*op, grids_of(settings_)) : std::nullopt;
+            if (op.ok() && row.node && (!of || of->key != *row.node))
                 fail(
                     "operator {} is kept at another place than it has: move it and undo that, or restore "
                     "terrain.db",

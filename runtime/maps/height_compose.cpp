@@ -164,7 +164,7 @@ void apply_operators(const Document& document, double step_m, glm::ivec2 first, 
     const WorldRect rect{low.x, low.y, low.x + (size.x - 1) * step_m, low.y + (size.y - 1) * step_m};
     thread_local std::vector<const Operator*> operators;
     operators.clear();
-    document.operators_over_height(rect, operators);
+    document.operators_over_height(rect, step_m, operators);
     if (operators.empty()) return;
     const SampleGrid<double> grid{out_m, size.x, size.y, size.x, low.x, low.y, step_m};
     for (const Operator* op : operators) apply_height(*op, grid);

@@ -129,7 +129,7 @@ HeightQueryCache::Bounds HeightQueryCache::bounds(const Document& document, cons
     if (const auto found = bounds_.find(page); found != bounds_.end()) return found->second;
     const auto operators_touch = [&] {
         std::vector<const Operator*> operators;
-        document.operators_over_height(map.page_rect(page), operators);
+        document.operators_over_height(map.page_rect(page), map.spacing_m(0), operators);
         return !operators.empty();
     };
     Bounds result;

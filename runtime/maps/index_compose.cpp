@@ -27,7 +27,7 @@ void IndexMap::compose(const Document& document, const VirtualMap& map, const Ma
     thread_local std::vector<const Operator*> operators;
     operators.clear();
     document.operators_over_index(
-        {low.x, low.y, low.x + (size.x - 1) * spacing, low.y + (size.y - 1) * spacing}, operators);
+        {low.x, low.y, low.x + (size.x - 1) * spacing, low.y + (size.y - 1) * spacing}, spacing, operators);
     const ResolvedRoles roles = document.roles();
     const SampleGrid<IndexTexel> grid{texels.data(), size.x, size.y, size.x, low.x, low.y, spacing};
     const bool floods = std::any_of(operators.begin(), operators.end(), [](const Operator* op) {

@@ -462,7 +462,7 @@ TEST(document, a_new_command_drops_what_was_undone_and_ids_are_not_reused) {
     std::vector<const Operator*> found;
     {
         const auto lock = document->read_lock();
-        document->operators_over_height({190, 90, 210, 110}, found);
+        document->operators_over_height({190, 90, 210, 110}, 0, found);
     }
     ASSERT_EQ(found.size(), 1u);
     EXPECT_EQ(found[0]->id, 1u);

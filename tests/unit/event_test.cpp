@@ -167,7 +167,7 @@ TEST(Event, TheTimeIsKeptWithTheProject) {
     EXPECT_EQ(take(document->content_digest()), digest);
     std::vector<const Operator*> found;
     const auto lock = document->read_lock();
-    document->operators_over_height({49, 59, 51, 61}, found);
+    document->operators_over_height({49, 59, 51, 61}, 0, found);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_TRUE(std::holds_alternative<Crater>(found[0]->shape));
 }

@@ -3,6 +3,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <glm/common.hpp>
 
 #include "document_fixture.h"
 #include "runtime/document/function_library.h"
@@ -59,10 +60,17 @@ void add_decals(Document& document, std::mt19937& random, int count) {
             return std::uniform_real_distribution<double>(low, high)(random);
         };
         const glm::dvec2 at(real(-200, kSide_m + 200), real(-200, kSide_m + 200));
-        OperatorShape shape = test::random_decal(random, at, std::exp2(real(-1, i % 20 ? 4 : 9.5)));
+        const double size_m = std::exp2(real(-1, i % 20 ? 4 : 9.5));
+        OperatorShape shape = test::random_decal(random, at, size_m);
+        if (i % 5 == 0) shape = Crater{at.x, at.y, size_m, 0, uint32_t(i)};
+        if (i % 7 == 0) shape = test::random_earth(random, at, 12, size_m);
+        if (i % 11 == 0) shape = Footprint{at.x, at.y, real(-3, 3), 0.3};
         if (auto* spline = std::get_if<SplineDecal>(&shape); spline && i % 2) spline->carve = 0;
         const Life life = i % 10 == 0 ? test::random_life(random) : Life{};
-        const auto dirt = document.apply({AddOperatorCommand{std::move(shape), life}});
+        Command command{AddOperatorCommand{shape, life}};
+        if (const auto* print = std::get_if<Footprint>(&shape))
+            command.body = FootprintsCommand{{*print}, life};
+        const auto dirt = document.apply(command);
         ASSERT_TRUE(dirt.ok()) << dirt.message();
     }
 }
@@ -124,13 +132,107 @@ TEST(operator_nodes, a_question_finds_what_a_walk_over_all_finds_and_reads_no_mo
             << rect.min_x << " " << rect.min_y << " " << rect.width() << " texel " << texel_m;
         document->operators_over_ground(rect, found);
         std::vector<const Operator*> volumes = walk(now, rect, 0);
-        std::erase_if(volumes,
-                      [](const Operator* op) { return !std::holds_alternative<VolumeDecal>(op->shape); });
+        std::erase_if(volumes, [](const Operator* op) {
+            return !std::holds_alternative<VolumeDecal>(op->shape) &&
+                   !std::holds_alternative<Flood>(op->shape);
+        });
         ASSERT_EQ(texts_of(found), texts_of(volumes));
     }
     document->trim_operators(0);
     EXPECT_EQ(document->statistics().loaded_nodes, 0u);
     EXPECT_EQ(document->statistics().loaded_operators, opened.loaded_operators);
+}
+
+// Heights and layers on grids of every step, by what nodes give for the step and by all there are.
+TEST(operator_nodes, grids_of_any_step_see_in_their_nodes_all_that_changes_them) {
+    const test::TemporaryFolder folder;
+    std::mt19937 random(21);
+    for (const double spacing_m : {1.0, 0.7, 8.0}) {
+        const auto path = folder.path() / std::to_string(spacing_m);
+        ProjectSettings settings = test::small_settings();
+        settings.height_samples_x = settings.height_samples_y = 2001;
+        settings.height_spacing_m = spacing_m;
+        settings.index_spacing_m = 2;
+        settings.refine = 1;
+        const double side_m = 2000 * spacing_m;
+        const auto real = [&](double low, double high) {
+            return std::uniform_real_distribution<double>(low, high)(random);
+        };
+        {
+            const auto document = take(Document::create(path, settings));
+            for (int i = 0; i < 800; ++i) {
+                // Some exactly on samples of coarse grids, where the smallest counts.
+                glm::dvec2 at(real(0, side_m), real(0, side_m));
+                if (i % 3 == 0) at = glm::round(at / (64 * spacing_m)) * (64 * spacing_m);
+                const double size_m = std::exp2(real(-2, 5));
+                OperatorShape shape = Crater{at.x, at.y, size_m, 0, uint32_t(i)};
+                if (i % 4 == 1) shape = Footprint{at.x, at.y, real(-3, 3), std::min(size_m, 40.0)};
+                if (i % 4 == 2) {
+                    TerrainDecal decal{.x_m = at.x, .y_m = at.y, .half_m = {size_m, size_m / 2}};
+                    decal.displacement_m = 0.5;
+                    shape = decal;
+                }
+                if (i % 4 == 3) {
+                    shape = Slide{.x_m = at.x,
+                                  .y_m = at.y,
+                                  .radius_m = size_m,
+                                  .to_m = at + 3 * size_m,
+                                  .to_radius_m = size_m};
+                    auto& slide = std::get<Slide>(shape);
+                    slide.volume_m3 = size_m;
+                    slide.way = 0.5;
+                }
+                Command command{AddOperatorCommand{shape, {}}};
+                if (const auto* print = std::get_if<Footprint>(&shape))
+                    command.body = FootprintsCommand{{*print}, {}};
+                const auto dirt = document->apply(command);
+                ASSERT_TRUE(dirt.ok()) << dirt.message();
+            }
+        }
+        const auto document = take(Document::open(path));
+        EXPECT_EQ(document->statistics().loaded_operators, 0u);
+        const std::vector<Operator> all = document->operators();
+        const ResolvedRoles roles{1, 2};
+        constexpr int kGrid = 40;
+        size_t touched = 0;
+        for (int question = 0; question < 400; ++question) {
+            if (question % 40 == 0) document->trim_operators(0);
+            const bool heights = question % 2 == 0;
+            const double step_m =
+                (heights ? spacing_m / 2 : settings.index_spacing_m) * std::exp2(random() % 9);
+            const glm::ivec2 first(glm::dvec2(real(-0.1, 1), real(-0.1, 1)) * side_m / step_m);
+            const glm::dvec2 low = glm::dvec2(first) * step_m;
+            const WorldRect rect{low.x, low.y, low.x + (kGrid - 1) * step_m, low.y + (kGrid - 1) * step_m};
+            std::vector<const Operator*> found;
+            const auto lock = document->read_lock();
+            if (heights || question % 4 == 1) {
+                document->operators_over_height(rect, step_m, found);
+                std::vector<double> some(kGrid * kGrid, 100), every(kGrid * kGrid, 100);
+                for (const Operator* op : found)
+                    apply_height(*op, {some.data(), kGrid, kGrid, kGrid, low.x, low.y, step_m});
+                for (const Operator& op : all)
+                    apply_height(op, {every.data(), kGrid, kGrid, kGrid, low.x, low.y, step_m});
+                ASSERT_EQ(some, every) << "step " << step_m << " at " << low.x << ", " << low.y;
+                touched += some != std::vector<double>(kGrid * kGrid, 100);
+            } else {
+                document->operators_over_index(rect, step_m, found);
+                std::vector<IndexTexel> some(kGrid * kGrid), every(kGrid * kGrid);
+                for (const Operator* op : found)
+                    apply_index(*op, roles, {some.data(), kGrid, kGrid, kGrid, low.x, low.y, step_m}, {});
+                for (const Operator& op : all)
+                    apply_index(op, roles, {every.data(), kGrid, kGrid, kGrid, low.x, low.y, step_m}, {});
+                ASSERT_EQ(some, every) << "step " << step_m << " at " << low.x << ", " << low.y;
+                touched += some != std::vector<IndexTexel>(kGrid * kGrid);
+            }
+        }
+        EXPECT_GT(touched, 60u) << "spacing " << spacing_m;
+        // A grid over all of the map reads those that its samples meet, and such as share their nodes.
+        document->trim_operators(0);
+        std::vector<const Operator*> found;
+        const auto lock = document->read_lock();
+        document->operators_over_height({0, 0, side_m, side_m}, spacing_m * 32, found);
+        EXPECT_LT(document->statistics().loaded_operators, 700u);
+    }
 }
 
 // Two documents, one of which forgets all that it can after every command and is closed now and then.
@@ -277,7 +379,7 @@ TEST(operator_nodes, a_database_of_the_first_format_is_brought_up_to_date) {
         document->operators_over_texture(everywhere, 0, found);
         texts = texts_of(found);
     }
-    EXPECT_TRUE(take(Document::verify(project)).empty());
+    EXPECT_EQ(take(Document::verify(project)), std::vector<std::string>());
     for (int time = 0; time < 2; ++time) {
         const auto document = take(Document::open(project));
         EXPECT_EQ(document->statistics().operators, 120u);
@@ -288,7 +390,7 @@ TEST(operator_nodes, a_database_of_the_first_format_is_brought_up_to_date) {
         document->operators_over_texture(everywhere, 0, found);
         EXPECT_EQ(texts_of(found), texts);
     }
-    EXPECT_TRUE(take(Document::verify(project)).empty());
+    EXPECT_EQ(take(Document::verify(project)), std::vector<std::string>());
 }
 
 TEST(operator_nodes, a_damaged_row_costs_its_decal_and_is_found_by_verify) {
