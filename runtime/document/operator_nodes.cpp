@@ -145,7 +145,9 @@ void OperatorNodes::load(int64_t key, Node& to) {
     if (to.loaded) return;
     to.loaded = true;
     ++reads_;
-    for (const Operator& op : read_(key)) insert(to, op);
+    // A document that only reads may meet one that another program has moved meanwhile: it keeps what it had.
+    for (const Operator& op : read_(key))
+        if (!loaded_.contains(op.id)) insert(to, op);
 }
 
 void OperatorNodes::unload(Node& from) {

@@ -328,6 +328,24 @@ TEST(operator_nodes, who_lists_operators_is_told_which_changed) {
     EXPECT_EQ(document->changed_operators(document->revision()), std::vector<uint64_t>());
 }
 
+TEST(operator_nodes, a_reader_keeps_what_it_had_of_what_another_program_moves) {
+    const test::TemporaryFolder folder;
+    const auto writer = test::create_small(folder.path() / "p");
+    ASSERT_TRUE(writer->apply({AddOperatorCommand{TerrainDecal{.x_m = 10, .y_m = 10}, {}}}).ok());
+    ASSERT_TRUE(writer->apply({AddOperatorCommand{TerrainDecal{.x_m = 290, .y_m = 200}, {}}}).ok());
+    const auto reader = take(Document::open(folder.path() / "p", OpenMode::read_only));
+    std::vector<const Operator*> found;
+    const auto seen = [&](double x, double y) {
+        const auto lock = reader->read_lock();
+        reader->operators_over_texture({x - 1, y - 1, x + 1, y + 1}, 0, found);
+        return found.size();
+    };
+    EXPECT_EQ(seen(10, 10), 1u);
+    ASSERT_TRUE(writer->apply({EditOperatorCommand{1, TerrainDecal{.x_m = 289, .y_m = 200}, {}}}).ok());
+    EXPECT_EQ(seen(290, 200), 1u) << "the other one";
+    EXPECT_EQ(seen(10, 10), 1u);
+}
+
 TEST(operator_nodes, a_changed_function_dirties_decals_that_were_not_read) {
     const test::TemporaryFolder folder;
     {
