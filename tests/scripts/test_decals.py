@@ -269,33 +269,36 @@ def test_a_layer_that_shares_its_file_is_laid_and_a_transition_is_refused(plain)
         assert (p.render(ABOVE, size=SIZE) == laid).all()
 
 
+def seen_from_above(p, size, ground, up=60.0):
+    """The albedo of the ground around (128, 128) from straight above, and the pixels' x and y on level ground."""
+    picture = p.render((128, 128, ground + up, 0, -90, 40), size, debug="albedo").astype(float)
+    row, column = np.mgrid[0:size[1], 0:size[0]]
+    scale = 2 * up * math.tan(math.radians(20)) / size[1]
+    return picture, 128 + (column + 0.5 - size[0] / 2) * scale, 128 - (row + 0.5 - size[1] / 2) * scale
+
+
+def cover_of_red(before, after):
+    """Blended as square roots of linear light, which is what pages keep."""
+    return 1 - (after[..., 2] / 255) ** 1.1 / np.maximum((before[..., 2] / 255) ** 1.1, 1e-3)
+
+
 def test_a_decal_displaces_the_ground_that_it_is_painted_on(plain):
     """Heights are evaluated on the CPU, colours in a shader: the rough edge of both is the same. From straight above, colour over
     colour and height over height are both the decal's cover."""
-    size, up, half, raised = (400, 400), 60.0, 18.0, 0.05
+    size, half, raised = (400, 400), 18.0, 0.05
     flat = dict(half_m=[half, 0.7 * half], heading_rad=0.6, edge=0.4, rough=0.7, seed=5, outline="ellipse")
     with loam.open(str(plain)) as p:
         ground = p.height(128, 128)
-
-        def look():
-            return p.render((128, 128, ground + up, 0, -90, 40), size, debug="albedo").astype(float)
-
-        before = look()
+        before, x, y = seen_from_above(p, size, ground)
         p.decal(128, 128, colour=RED, displacement_m=raised, **flat)
-        after = look()
-        row, column = np.mgrid[0:size[1], 0:size[0]]
-        scale = 2 * up * math.tan(math.radians(20)) / size[1]
-        x, y = 128 + (column + 0.5 - size[0] / 2) * scale, 128 - (row + 0.5 - size[1] / 2) * scale
+        after, _, _ = seen_from_above(p, size, ground)
         heights = p.height(x.ravel(), y.ravel()).reshape(x.shape)
         p.undo()
         cover = (heights - p.height(x.ravel(), y.ravel()).reshape(x.shape)) / raised
         assert cover.min() > -1e-3 and cover.max() < 1 + 1e-3
         assert 0.05 < (cover > 0.99).mean() < 0.6 and (cover == 0).mean() > 0.2
 
-        def root(picture):  # of linear light, as pages keep it and decals are blended
-            return (picture[..., 2] / 255) ** 1.1
-
-        painted = 1 - root(after) / np.maximum(root(before), 1e-3)
+        painted = cover_of_red(before, after)
         assert np.abs(painted - cover).mean() < 0.003
         assert np.abs(painted - cover).max() < 0.08, "a metre of the height map lies between its samples"
         p.decal(128, 128, colour=RED, displacement_m=-2, life={"from_s": 0, "rise_s": 10}, **flat)
@@ -304,3 +307,50 @@ def test_a_decal_displaces_the_ground_that_it_is_painted_on(plain):
         p.time_s = 10
         assert p.height(128, 128) - ground == pytest.approx(-2, abs=1e-3) and -1.9 < half_way < -0.1
         assert p.count_stale_pages() == 0
+
+
+def test_a_road_is_carved_where_it_is_painted(plain):
+    """The carve is a sum over segments on the CPU, the paint one over pieces in a shader."""
+    size = (400, 400)
+    with loam.open(str(plain)) as p:
+        ground = float(p.height(128, 128))
+        top = ground + 0.2
+        points = [[112, 118, top, 3], [124, 112, top, 5], [126, 140, top, 7], [144, 138, top, 4]]
+        before, x, y = seen_from_above(p, size, ground)
+        old = p.height(x.ravel(), y.ravel()).reshape(x.shape)
+        p.spline(points, carve=1, shoulder_m=0, edge=0, colour=RED)
+        after, _, _ = seen_from_above(p, size, ground)
+        carved = (p.height(x.ravel(), y.ravel()).reshape(x.shape) - old) / (top - old)
+        painted = cover_of_red(before, after)
+        inside, outside = carved > 0.999, np.abs(carved) < 1e-3
+        assert inside.sum() > 5000 and outside.sum() > 50000
+        # A pixel's filter is as wide as two; what lies between is no wider than the height map's samples are apart.
+        assert (painted[inside] < 0.5).mean() < 0.005 and (painted[outside] > 0.5).mean() < 0.005
+        assert painted[inside].min() > 0.2 and painted[outside].max() < 0.8
+        assert (~inside & ~outside).sum() < 0.5 * inside.sum()
+
+
+def test_a_volume_paints_the_ground_in_its_box(plain):
+    """By plain arithmetic on the composed heights; any direction, rolled, mirrored."""
+    size = (400, 400)
+    with loam.open(str(plain)) as p:
+        ground = float(p.height(128, 128))
+        before, x, y = seen_from_above(p, size, ground)
+        z = p.height(x.ravel(), y.ravel()).reshape(x.shape)
+        for direction, roll, half in (((0, 0, -1), 0.4, [9, 5, 2]), ((0.5, 0.2, -1), -1.1, [-8, 6, 3]), ((1, -2, -1.5), 2.5, [6, 9, 4])):
+            p.volume([130, 126, ground + 0.3], half_m=half, direction=list(direction), roll_rad=roll, edge=0, deep_edge=1e-4,
+                     colour=RED)
+            after, _, _ = seen_from_above(p, size, ground)
+            p.undo()
+            axis_z = -np.array(direction, float) / np.linalg.norm(direction)
+            level = math.hypot(axis_z[0], axis_z[1])
+            flat = np.array([-axis_z[1], axis_z[0], 0]) / level if level > 1e-9 else np.array([1.0, 0, 0])
+            side = np.cross(axis_z, flat)
+            axes = (flat * math.cos(roll) + side * math.sin(roll), side * math.cos(roll) - flat * math.sin(roll), axis_z)
+            away = np.stack([x - 130, y - 126, z - (ground + 0.3)], axis=-1)
+            # How far inside, the nearest side counting; metres.
+            inside = np.min([abs(h) - np.abs(away @ axis) for axis, h in zip(axes, half)], axis=0)
+            painted = cover_of_red(before, after)
+            assert (inside > 0.3).sum() > 4000
+            assert painted[inside > 0.3].min() > 0.5, (direction, roll)
+            assert painted[inside < -0.3].max() < 0.5, (direction, roll)
