@@ -53,12 +53,15 @@ std::optional<int> kind_of(const OperatorShape& shape) {
 
 // The longest spacing * 2^k of which a multiple lies in the rectangle both ways; 0: not even of the spacing.
 double longest_step_m(const WorldRect& rect, double spacing_m) {
-    // Grids reach a place by sums of their own, and samples a little outside may count (samples_in).
-    constexpr double kSlack = 1e-5, kLongest_m = 1 << 24;
+    // Grids reach a place by sums and spacings of their own (exact_spacing), and samples a little outside may
+    // count (samples_in): shares of a step, and of the way there.
+    constexpr double kSlack = 1e-5, kWaySlack = 1e-10, kLongest_m = 1 << 24;
     double longest_m = 0;
     for (double step_m = spacing_m; step_m <= kLongest_m; step_m *= 2) {
         const auto hit = [&](double low, double high) {
-            return std::floor(high / step_m + kSlack) >= std::ceil(low / step_m - kSlack);
+            const double first = low / step_m, last = high / step_m;
+            return std::floor(last + kSlack + kWaySlack * std::abs(last)) >=
+                   std::ceil(first - kSlack - kWaySlack * std::abs(first));
         };
         if (!hit(rect.min_x, rect.max_x) || !hit(rect.min_y, rect.max_y)) break;
         longest_m = step_m;
@@ -69,7 +72,8 @@ double longest_step_m(const WorldRect& rect, double spacing_m) {
 }  // namespace
 
 OperatorGrids grids_of(const ProjectSettings& settings) {
-    return {settings.height_spacing_m / double(1 << settings.refine), settings.index_spacing_m};
+    constexpr int kMostRefine = 6;
+    return {std::ldexp(settings.height_spacing_m, -kMostRefine), settings.index_spacing_m};
 }
 
 std::optional<OperatorNode> node_of(const Operator& op, const OperatorGrids& grids) {

@@ -36,7 +36,8 @@ namespace loam {
 
 using OperatorNode = PageStore::OperatorNode;
 
-// The grids that ask for heights and layers: of the finest level, metres.
+// The grids that ask for heights and layers: of the finest level there may be, whatever `refine` is now;
+// metres.
 struct OperatorGrids {
     double height_m = 1, index_m = 1;
 };

@@ -153,7 +153,7 @@ TEST(operator_nodes, grids_of_any_step_see_in_their_nodes_all_that_changes_them)
         settings.height_samples_x = settings.height_samples_y = 2001;
         settings.height_spacing_m = spacing_m;
         settings.index_spacing_m = 2;
-        settings.refine = 1;
+        settings.refine = 0;
         const double side_m = 2000 * spacing_m;
         const auto real = [&](double low, double high) {
             return std::uniform_real_distribution<double>(low, high)(random);
@@ -189,6 +189,10 @@ TEST(operator_nodes, grids_of_any_step_see_in_their_nodes_all_that_changes_them)
                 ASSERT_TRUE(dirt.ok()) << dirt.message();
             }
         }
+        // Someone asks for a finer height map later.
+        ProjectSettings finer = take(load_project(path));
+        finer.refine = 3;
+        ASSERT_TRUE(save_project(path, finer).ok());
         const auto document = take(Document::open(path));
         EXPECT_EQ(document->statistics().loaded_operators, 0u);
         const std::vector<Operator> all = document->operators();
@@ -199,7 +203,7 @@ TEST(operator_nodes, grids_of_any_step_see_in_their_nodes_all_that_changes_them)
             if (question % 40 == 0) document->trim_operators(0);
             const bool heights = question % 2 == 0;
             const double step_m =
-                (heights ? spacing_m / 2 : settings.index_spacing_m) * std::exp2(random() % 9);
+                (heights ? spacing_m / 8 : settings.index_spacing_m) * std::exp2(random() % 11);
             const glm::ivec2 first(glm::dvec2(real(-0.1, 1), real(-0.1, 1)) * side_m / step_m);
             const glm::dvec2 low = glm::dvec2(first) * step_m;
             const WorldRect rect{low.x, low.y, low.x + (kGrid - 1) * step_m, low.y + (kGrid - 1) * step_m};
