@@ -234,18 +234,18 @@ py::object edit_operator(Project& p, uint64_t id, const py::kwargs& changes) {
 }
 
 // Control points of a smooth curve through places, with the ground's height where a place has none.
-std::vector<std::array<double, 4>> spline_through(Project& p, const std::vector<std::vector<double>>& places,
-                                                  double width_m) {
+std::vector<std::vector<double>> spline_through(Project& p, const std::vector<std::vector<double>>& places,
+                                                double width_m) {
     std::vector<SplinePoint> through;
     for (const std::vector<double>& at : places) {
-        if (at.size() < 2 || at.size() > 4)
-            throw PythonError("a place is (x, y), (x, y, z) or (x, y, z, width)");
+        if (at.size() < 2 || at.size() > 5)
+            throw PythonError("a place is (x, y), (x, y, z), (x, y, z, width) or (x, y, z, width, roll)");
         through.push_back({at[0], at[1], at.size() > 2 ? at[2] : unwrap(p.session().height_m(at[0], at[1])),
-                           at.size() > 3 ? at[3] : width_m});
+                           at.size() > 3 ? at[3] : width_m, at.size() > 4 ? at[4] : 0});
     }
-    std::vector<std::array<double, 4>> points;
+    std::vector<std::vector<double>> points;
     for (const SplinePoint& point : bezier_through(through))
-        points.push_back({point.x_m, point.y_m, point.z_m, point.width_m});
+        points.push_back({point.x_m, point.y_m, point.z_m, point.width_m, point.roll_rad});
     return points;
 }
 

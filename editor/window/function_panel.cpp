@@ -121,6 +121,24 @@ void selected_decal_properties(App& app, ui::Ui& ui) {
     any |= function_properties(app, ui, changed.function, changed.parameters);
     auto* decal = std::get_if<TerrainDecal>(&shape);
     if (decal && ui::slider(ui, "Displacement", decal->displacement_m, kDisplacement)) any = true;
+    // The whole road leans; points that lean otherwise keep their difference.
+    if (auto* spline = std::get_if<SplineDecal>(&shape); spline && spline->carve > 0) {
+        double sum = 0;
+        for (const SplinePoint& point : spline->points) sum += point.roll_rad;
+        const double mean_rad = sum / double(spline->points.size());
+        constexpr double kDegrees = 180 / M_PI;
+        double degrees = mean_rad * kDegrees;
+        if (ui::slider(ui, "Roll", degrees,
+                       {.min = -30,
+                        .max = 30,
+                        .decimals = 1,
+                        .unit = "°",
+                        .tooltip = "Of the carved profile; positive lowers the right side"})) {
+            for (SplinePoint& point : spline->points)
+                point.roll_rad = std::clamp(point.roll_rad + degrees / kDegrees - mean_rad, -1.2, 1.2);
+            any = true;
+        }
+    }
     if (material->function.empty() && !changed.function.empty()) {  // its own colours, not those of a layer
         changed.layer.clear();
         changed.colour = {1, 1, 1};

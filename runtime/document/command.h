@@ -20,9 +20,9 @@
 //       right, 2 a piece of a tyre's track, 3 of a furrow. "keep":10000 drops the oldest of those with an end
 //   {"cmd":"decal","x":…,"y":…,"half_m":[4,2],"heading_rad":0,"outline":"rectangle","displacement_m":0,
 //   MATERIAL}
-//   {"cmd":"spline","points":[[x,y,z,width],…],"fade_m":0,"carve":0,"shoulder_m":3, MATERIAL}
-//       control points of cubic Bezier pieces: 4, 7, 10, …; without a width they take "width_m", and a carve
-//       needs every z
+//   {"cmd":"spline","points":[[x,y,z,width,roll],…],"fade_m":0,"carve":0,"shoulder_m":3, MATERIAL}
+//       control points of cubic Bezier pieces: 4, 7, 10, …; without a width they take "width_m", without a
+//       roll 0, and a carve needs every z
 //   {"cmd":"volume","at":[x,y,z],"half_m":[4,2,3],"direction":[0,0,-1],"roll_rad":0,"outline":"ellipse",
 //   MATERIAL}
 //       MATERIAL:

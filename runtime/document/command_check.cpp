@@ -176,6 +176,7 @@ Status check(const SplineDecal& s) {
         LOAM_TRY(place_ok(fmt::format("control point {}", i), p.x_m, p.y_m));
         LOAM_TRY(in_range(fmt::format("z of control point {}", i), p.z_m, -kHighest_m, kHighest_m));
         LOAM_TRY(in_range(fmt::format("the width at control point {}", i), p.width_m, 0.02, 1000));
+        LOAM_TRY(in_range(fmt::format("the roll at control point {}", i), p.roll_rad, -1.2, 1.2));
         if (i > 0) polygon_m += std::hypot(p.x_m - s.points[i - 1].x_m, p.y_m - s.points[i - 1].y_m);
     }
     if (polygon_m < 0.01) return error("the control points of a spline all lie at one place");

@@ -152,15 +152,17 @@ SplineDecal read_spline(Fields& fields) {
     s.shoulder_m = fields.number("shoulder_m", s.shoulder_m);
     for (const Json& point : fields.list("points")) {
         const size_t size = point.is_array() ? point.size() : 0, index = s.points.size();
-        if (size < 2 || size > 4)
-            refuse("{}: control point {} must be [x, y], [x, y, z] or [x, y, z, width]", fields.place(),
-                   index);
+        if (size < 2 || size > 5)
+            refuse(
+                "{}: control point {} must be [x, y], [x, y, z], [x, y, z, width] or [x, y, z, width, roll]",
+                fields.place(), index);
         if (size == 2 && s.carve > 0)
             refuse("{}: control point {} has no z, a carve needs every one", fields.place(), index);
         const std::string what = fmt::format("points[{}]", index);
         s.points.push_back({fields.number_of(point[0], what), fields.number_of(point[1], what),
                             size > 2 ? fields.number_of(point[2], what) : 0,
-                            size > 3 ? fields.number_of(point[3], what) : width_m});
+                            size > 3 ? fields.number_of(point[3], what) : width_m,
+                            size > 4 ? fields.number_of(point[4], what) : 0});
     }
     s.material = read_material(fields);
     return s;
@@ -320,7 +322,10 @@ void write_decal(Json& json, const TerrainDecal& d) {
 
 void write_spline(Json& json, const SplineDecal& s) {
     json["points"] = Json::array();
-    for (const SplinePoint& p : s.points) json["points"].push_back({p.x_m, p.y_m, p.z_m, p.width_m});
+    for (const SplinePoint& p : s.points) {
+        json["points"].push_back({p.x_m, p.y_m, p.z_m, p.width_m});
+        if (p.roll_rad != 0) json["points"].back().push_back(p.roll_rad);
+    }
     json["fade_m"] = s.fade_m;
     json["carve"] = s.carve;
     json["shoulder_m"] = s.shoulder_m;

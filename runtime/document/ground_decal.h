@@ -60,6 +60,8 @@ struct SplinePoint {
     double x_m = 0, y_m = 0;
     double z_m = 0;  // of the carved profile
     double width_m = 4;
+    double roll_rad =
+        0;  // of the carved profile around its middle line, ±1.2; positive lowers the right side
     bool operator==(const SplinePoint&) const = default;
 };
 

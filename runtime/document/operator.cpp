@@ -114,7 +114,7 @@ void apply_carve(const SplineDecal& spline, const SampleGrid<double>& heights) {
     const SplinePath& path = path_of(spline);
     const double reach_m = carve_reach_m(spline);
     struct Nearest {
-        double squared_m = INFINITY, along_m = 0;
+        double squared_m = INFINITY, along_m = 0, across_m = 0;  // to the right
         uint32_t segment = 0;
     };
     thread_local std::vector<Nearest> nearest;
@@ -138,7 +138,8 @@ void apply_carve(const SplineDecal& spline, const SampleGrid<double>& heights) {
                     const double ax = dx - along * s.direction.x, ay = dy - along * s.direction.y;
                     const double squared = ax * ax + ay * ay;
                     Nearest& n = nearest[size_t(j) * size_t(heights.width) + size_t(i)];
-                    if (squared < n.squared_m) n = {squared, along, k};
+                    if (squared < n.squared_m)
+                        n = {squared, along, dx * s.direction.y - dy * s.direction.x, k};
                 }
         }
     }
@@ -149,14 +150,17 @@ void apply_carve(const SplineDecal& spline, const SampleGrid<double>& heights) {
             if (!(n.squared_m < reach_m * reach_m)) continue;
             const SplineSegment& s = path.segments()[n.segment];
             const double share = n.along_m / s.length_m, at_m = s.start_m + n.along_m;
-            const double beyond_m =
-                std::sqrt(n.squared_m) - (s.half_from_m + share * (s.half_to_m - s.half_from_m));
+            const double half_m = s.half_from_m + share * (s.half_to_m - s.half_from_m);
+            const double beyond_m = std::sqrt(n.squared_m) - half_m;
             double weight = spline.carve;
             if (beyond_m > 0)
                 weight *= spline.shoulder_m > 0 ? 1.0 - ramp(beyond_m / spline.shoulder_m) : 0.0;
             if (spline.fade_m > 0)
                 weight *= ramp(at_m / spline.fade_m) * ramp((path.length_m() - at_m) / spline.fade_m);
-            const double profile_m = s.z_from_m + share * (s.z_to_m - s.z_from_m);
+            // The shoulders go on from the edges.
+            const double bank = s.bank_from + share * (s.bank_to - s.bank_from);
+            const double profile_m =
+                s.z_from_m + share * (s.z_to_m - s.z_from_m) - bank * std::clamp(n.across_m, -half_m, half_m);
             double& height = heights.at(i, j);
             height += weight * (profile_m - height);
         }

@@ -15,10 +15,11 @@ constexpr uint32_t kMostSegments = 16;  // a piece
 
 SplinePoint middle(const SplinePoint& a, const SplinePoint& b) {
     return {(a.x_m + b.x_m) * 0.5, (a.y_m + b.y_m) * 0.5, (a.z_m + b.z_m) * 0.5,
-            (a.width_m + b.width_m) * 0.5};
+            (a.width_m + b.width_m) * 0.5, (a.roll_rad + b.roll_rad) * 0.5};
 }
 
-// How far p is from where the chord has its share t, sideways, in height and in half width.
+// How far p is from where the chord has its share t, sideways, in height, in half width and, by its bank, in
+// height at its edge.
 double distance_from_chord(const SplinePoint& p, const SplinePoint& a, const SplinePoint& b, double share) {
     const double dx = b.x_m - a.x_m, dy = b.y_m - a.y_m, squared = dx * dx + dy * dy;
     const double px = p.x_m - a.x_m, py = p.y_m - a.y_m;
@@ -26,8 +27,11 @@ double distance_from_chord(const SplinePoint& p, const SplinePoint& a, const Spl
     const double aside = std::hypot(px - along * dx, py - along * dy);
     // Height and width follow the share of the length, so a control point's own place along the chord counts.
     const double at = squared > 0 ? along : share;
-    return std::max({aside, std::abs(p.z_m - (a.z_m + at * (b.z_m - a.z_m))),
-                     std::abs(p.width_m - (a.width_m + at * (b.width_m - a.width_m))) * 0.5});
+    const double bank_from = std::tan(a.roll_rad), bank_to = std::tan(b.roll_rad);
+    return std::max(
+        {aside, std::abs(p.z_m - (a.z_m + at * (b.z_m - a.z_m))),
+         std::abs(p.width_m - (a.width_m + at * (b.width_m - a.width_m))) * 0.5,
+         std::abs(std::tan(p.roll_rad) - (bank_from + at * (bank_to - bank_from))) * p.width_m * 0.5});
 }
 
 }  // namespace
@@ -60,8 +64,8 @@ void SplinePath::add_segment(const SplinePoint& a, const SplinePoint& b) {
     const double length = std::hypot(to.x - from.x, to.y - from.y);
     half_width_m_ = std::max({half_width_m_, a.width_m * 0.5, b.width_m * 0.5});
     if (!(length > kShortest_m)) return;
-    segments_.push_back(
-        {from, (to - from) / length, length, length_m_, a.z_m, b.z_m, a.width_m * 0.5, b.width_m * 0.5});
+    segments_.push_back({from, (to - from) / length, length, length_m_, a.z_m, b.z_m, a.width_m * 0.5,
+                         b.width_m * 0.5, std::tan(a.roll_rad), std::tan(b.roll_rad)});
     length_m_ += length;
 }
 
@@ -112,12 +116,13 @@ std::vector<SplinePoint> bezier_through(std::span<const SplinePoint> places) {
 SplinePoint bezier_at(std::span<const SplinePoint> points, size_t piece, double t) {
     const SplinePoint* p = points.data() + 3 * piece;
     const double u = 1 - t, w[4] = {u * u * u, 3 * u * u * t, 3 * u * t * t, t * t * t};
-    SplinePoint at{0, 0, 0, 0};
+    SplinePoint at{0, 0, 0, 0, 0};
     for (int i = 0; i < 4; ++i) {
         at.x_m += w[i] * p[i].x_m;
         at.y_m += w[i] * p[i].y_m;
         at.z_m += w[i] * p[i].z_m;
         at.width_m += w[i] * p[i].width_m;
+        at.roll_rad += w[i] * p[i].roll_rad;
     }
     return at;
 }

@@ -1,6 +1,6 @@
 // A splined decal's curve as straight segments. Bezier pieces are halved until the control polygon is flat:
-// its inner points lie within the tolerance of the chord (in height and width too), which bounds the curve's
-// own distance, as a Bezier curve lies in the hull of its control points. All in doubles.
+// its inner points lie within the tolerance of the chord (in height, width and bank too), which bounds the
+// curve's own distance, as a Bezier curve lies in the hull of its control points. All in doubles.
 //
 // Segments come in pieces of a few, each with a box of its own: what a long road touches is a row of small
 // rectangles. A piece also lists every segment whose reach may meet its own, so that the nearest segment to
@@ -25,6 +25,7 @@ struct SplineSegment {
     double start_m = 0;  // arc length from the beginning
     double z_from_m = 0, z_to_m = 0;
     double half_from_m = 0, half_to_m = 0;  // of the width
+    double bank_from = 0, bank_to = 0;      // fall to the right, metres a metre
 };
 
 struct SplinePiece {

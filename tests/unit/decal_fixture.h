@@ -56,7 +56,8 @@ inline OperatorShape random_decal(std::mt19937& random, glm::dvec2 at, double si
             SplineDecal spline;
             for (uint64_t i = 0, count = 4 + 3 * (random() % 3); i < count; ++i)
                 spline.points.push_back({at.x + real(-2, 2) * size_m, at.y + real(-2, 2) * size_m,
-                                         real(-5, 20), real(0.05, 1) * size_m});
+                                         real(-5, 20), real(0.05, 1) * size_m,
+                                         random() % 2 ? real(-0.6, 0.6) : 0});
             if (random() % 3 == 0) spline.points[1] = spline.points[0];  // a cusp's beginning
             spline.carve = random() % 2 ? real(0, 1) : 0;
             spline.shoulder_m = real(0, 1) * size_m;

@@ -272,7 +272,7 @@ TEST(decals, bad_ones_are_refused_with_one_sentence) {
         {R"({"cmd":"spline","points":[[0,0],[1,0],[2,0]]})",
          "a spline has 3 control points, must be 4, 7, 10"},
         {R"({"cmd":"spline","points":[[0,0],[1,0],[2,0],[3]]})",
-         "spline: control point 3 must be [x, y], [x, y, z] or [x, y, z, width]"},
+         "spline: control point 3 must be [x, y], [x, y, z], [x, y, z, width] or [x, y, z, width, roll]"},
         {R"({"cmd":"spline","points":[[0,0],[1,0],[2,0],[3,0]],"carve":1})",
          "spline: control point 0 has no z, a carve needs every one"},
         {R"({"cmd":"spline","points":[[0,0],[1,0],[2,0],[3,0]],"width_m":0})",
@@ -304,6 +304,35 @@ TEST(decals, bad_ones_are_refused_with_one_sentence) {
     TerrainDecal decal;
     decal.half_m.x = INFINITY;
     EXPECT_FALSE(check_shape(decal).ok());
+}
+
+// A banked road's profile by its closed form: across it, over the shoulder, and along a roll that grows.
+TEST(spline, rolls_its_carved_profile) {
+    SplineDecal road{
+        .points = {{0, 50, 10, 8, 0.2}, {40, 50, 10, 8, 0.2}, {80, 50, 10, 8, 0.2}, {120, 50, 10, 8, 0.2}}};
+    road.carve = 1;
+    road.shoulder_m = 4;
+    const auto height_at = [](const Operator& op, double x, double y) {
+        double height = 3;
+        apply_height(op, {&height, 1, 1, 1, x, y, 1});
+        return height;
+    };
+    const Operator level = prepared(road);
+    for (const double across : {-3.5, -1.0, 0.0, 2.0, 3.9})  // to the right of the way is south
+        EXPECT_NEAR(height_at(level, 60, 50 - across), 10 - std::tan(0.2) * across, 1e-6) << across;
+    const double edge_m = 10 - std::tan(0.2) * 4;
+    EXPECT_NEAR(height_at(level, 60, 50 - 6), 3 + 0.5 * (edge_m - 3), 1e-6) << "half way down the shoulder";
+    EXPECT_EQ(height_at(level, 60, 50 - 8.01), 3);
+    for (size_t i = 0; i < 4; ++i) road.points[i].roll_rad = 0.4 * double(i) / 3;
+    const Operator growing = prepared(road);
+    for (const double x : {10.0, 47.0, 111.0}) {
+        const double bank = std::tan(0.4 * x / 120);
+        EXPECT_NEAR(height_at(growing, x, 47), 10 - 3 * bank, 0.011) << "to a centimetre at its edge";
+    }
+    road.points[2].roll_rad = 1.3;
+    EXPECT_NE(
+        check_command({AddOperatorCommand{road, {}}}).message().find("the roll at control point 2 is 1.3"),
+        std::string::npos);
 }
 
 // The closed form of a decal's displacement along its axes, at the origin and in the far corner of a large
