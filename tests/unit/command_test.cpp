@@ -154,3 +154,10 @@ TEST(brush_falloff, falls_smoothly_from_one_to_zero) {
         }
     }
 }
+
+// Their own command is the one that can be read again from the journal.
+TEST(commands, prints_are_not_added_as_other_operators_are) {
+    const Status status = check_command({AddOperatorCommand{Footprint{.x_m = 1, .y_m = 1}, {}}});
+    ASSERT_FALSE(status.ok());
+    EXPECT_EQ(status.message(), "prints are laid by the command footprints");
+}
